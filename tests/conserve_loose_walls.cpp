@@ -10,7 +10,6 @@
 #include "growing_slide.h"
 #include "observe/budget.h"
 #include "observe/memory_archive.h"
-#include "prism_maker.h"
 #include "state_bits.h"
 #include "threads_of_test.h"
 
@@ -24,7 +23,7 @@ constexpr double kLoose = 0.25;  ///< [m]
 Barrier wall_of(double x0, double y0, double x1, double y1, double height) {
     Barrier wall;
     wall.name = "wall";
-    wall.outline = ring({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}});
+    wall.outline = rectangle(x0, y0, x1, y1);
     wall.height = height;
     return wall;
 }
@@ -151,7 +150,11 @@ TEST_CASE("A deposit that has become ground before a barrier takes no momentum f
         s.erodible.reset();
         s.barriers = {wall_of(52.3, -5.0, 55.1, 85.0, 3.0)};
     };
-    WalledColumns flow(slide(add_second)), ground(slide([&](Scene&s) { add_second(s), leave_deposits(s); }));
+    const auto as_ground = [&](Scene& s) {
+        add_second(s);
+        leave_deposits(s);
+    };
+    WalledColumns flow(slide(add_second)), ground(slide(as_ground));
     const auto over_by = [](WalledColumns& run, double time) {
         run_to(run, time);
         return run.loads()->barriers.at(0).overtopped;

@@ -16,13 +16,7 @@ bool bed_changes(const Draft& draft) {
 /// A wall from one random place to another, up to five cells high. Nothing is its own mirror image any more.
 void wall_across(Dice& dice, Draft& draft) {
     const GridGeometry& g = draft.dem().geometry;
-    const auto place = [&] {
-        const double x = g.x0 + g.cell * dice.between(1.0, static_cast<double>(g.nx - 2));
-        const double y = g.y0 + g.cell * dice.between(1.0, static_cast<double>(g.ny - 2));
-        return "[" + toml_number(x) + ", " + toml_number(y) + "]";
-    };
-    const std::string from = place();
-    draft.keys["barrier#0.line"] = "[" + from + ", " + place() + "]";
+    draft.keys["barrier#0.line"] = line_across(dice, g);
     draft.keys["barrier#0.height"] = toml_number(g.cell * dice.decades(0.1, 5.0));
     draft.claims = {};
     draft.claims.threads = draft.claims.resumes = true;

@@ -114,7 +114,8 @@ TEST_CASE("A bank that only the raw bed has gives no speed to a flow that would 
     REQUIRE(g + bed.hxx * v * v < 0.0);
     REQUIRE(smooth < 0.1 * bed.bx);
     const Drive<double> slope = bed.drive(bed.bx, 0.0, cosine);
-    const double up = bed.driving(slope, g, 0.0, v, 0.0, cosine).x, down = bed.driving(slope, g, 0.0, -v, 0.0, cosine).x;
+    const double up = bed.driving(slope, g, 0.0, v, 0.0, cosine).x,
+                 down = bed.driving(slope, g, 0.0, -v, 0.0, cosine).x;
     // Speed is won (a = -drive) by no more than the smoothed slope allows; the way down is whole.
     const double whole = (g + bed.hxx * v * v) * bed.bx / (1.0 + bed.bx * bed.bx);
     CHECK(up == Approx(whole * std::max(0.0, smooth) / bed.bx).epsilon(1e-10));

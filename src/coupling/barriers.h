@@ -34,6 +34,7 @@ std::vector<RaisedNode> raised_nodes(const Scene& scene);
 
 /// Puts the tops of those nodes into a scene whose first node is (i0, j0) of the one they were found in. The ground under them
 /// and a cell around is firm from then on: a barrier that stands has a footing that holds. Loose ground so far there [m3].
+/// Where a barrier does not rise above the bed, its ground stays loose.
 double stand_in(Scene& scene, const std::vector<RaisedNode>& raised, Index i0, Index j0);
 
 /// What a report says of loose ground that stand_in() took for firm; nothing without any.

@@ -43,16 +43,13 @@ GrowingColumns::GrowingColumns(const Scene& scene, Start start)
 /// Barriers stand on the part that the run begins with: a larger one has the same tops, to the last bit.
 void GrowingColumns::find_raised() {
     raised_ = raised_nodes(scene_);
-    if (raised_.empty()) return;
     for (RaisedNode& node : raised_) node.i += held_.i0, node.j += held_.j0;
-    Scene walled = scene_;
-    remark_ = remark_on_footings(stand_in(walled, raised_, held_.i0, held_.j0));
 }
 
-std::unique_ptr<DepthAveraged> GrowingColumns::columns_among_walls(Start start) const {
+std::unique_ptr<DepthAveraged> GrowingColumns::columns_among_walls(Start start) {
     if (raised_.empty()) return std::make_unique<DepthAveraged>(scene_, start);
     Scene walled = scene_;
-    stand_in(walled, raised_, held_.i0, held_.j0);
+    remark_ = remark_on_footings(stand_in(walled, raised_, held_.i0, held_.j0));
     return std::make_unique<DepthAveraged>(walled, start);
 }
 

@@ -29,7 +29,7 @@ private:
 
     void show_part();
     void find_raised();
-    std::unique_ptr<DepthAveraged> columns_among_walls(Start start) const;
+    std::unique_ptr<DepthAveraged> columns_among_walls(Start start);
     void sample();
     NodeBox room_for(const NodeBox& worked, Index clear) const;
     void grow(const NodeBox& box);

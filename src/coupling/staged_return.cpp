@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "coupling/staged_run.h"
+#include "terrain/part_of.h"
 
 namespace frana {
 namespace {
@@ -88,16 +89,15 @@ std::optional<Vec2> StagedRun::nearest_before(const DepartedPoint& point, const 
 }
 
 /// Their ground is filtered: nodes beside those that a barrier raises are raised too.
-void StagedRun::mark_raised(const Raster& bed) {
-    const GridGeometry& g = bed.geometry;
+void StagedRun::mark_raised() {
+    const GridGeometry& g = scene_.bed.geometry;
     raised_.assign(static_cast<std::size_t>(g.size()), 0);
-    for (Index j = 0; j < g.ny; ++j)
-        for (Index i = 0; i < g.nx; ++i) {
-            if (!(bed.at(i, j) > scene_.bed.at(i, j))) continue;
-            for (Index b = std::max<Index>(0, j - 1); b <= std::min(g.ny - 1, j + 1); ++b)
-                for (Index a = std::max<Index>(0, i - 1); a <= std::min(g.nx - 1, i + 1); ++a)
-                    raised_[static_cast<std::size_t>(b * g.nx + a)] = 1;
-        }
+    for (const RaisedNode& node : raised_nodes(scene_)) {
+        const NodeBox around = common(widened({node.i, node.j, 1, 1}, 1), NodeBox::all(g));
+        for (Index j = around.j0; j < around.j0 + around.ny; ++j)
+            for (Index i = around.i0; i < around.i0 + around.nx; ++i)
+                raised_[static_cast<std::size_t>(j * g.nx + i)] = 1;
+    }
 }
 
 bool StagedRun::above_barrier(const Vec2& place) const {

@@ -30,7 +30,7 @@ StagedRun::StagedRun(const Scene& scene, Start start)
       map_(scene),
       spray_(scene) {
     expect(scene.solid.has_value(), "a staged run has a stage in space");
-    if (!scene.barriers.empty()) mark_raised(with_barriers(scene));
+    if (!scene.barriers.empty()) mark_raised();
     scene_.particles = {};
     status_ = columns_->status();
     if (start == Start::placed && scene.solid->from == 0.0)

@@ -84,7 +84,7 @@ private:
                                        const std::function<bool(Index, Index)>& allowed) const;
     bool is_raised(Index i, Index j) const;
     bool on_raised(const Vec2& x) const;
-    void mark_raised(const Raster& bed);
+    void mark_raised();
     bool above_barrier(const Vec2& place) const;
     bool behind_barrier(const Vec3& from, const Vec2& place) const;
     void show_points();

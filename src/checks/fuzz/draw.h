@@ -65,6 +65,9 @@ std::string toml_number(double value);
 void say(Draft& draft, const std::string& key, const std::string& word);
 void say(Draft& draft, const std::string& key, double number);
 
+/// A line from one random place of a terrain to another, as TOML.
+std::string line_across(Dice& dice, const GridGeometry& grid);
+
 /// Parts of those that other models use too.
 void draw_bed_law(Dice& dice, Draft& draft);
 /// The keys that a bed law needs, anywhere in their ranges.

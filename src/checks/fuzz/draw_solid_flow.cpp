@@ -48,19 +48,23 @@ void draw_walls(Dice& dice, Draft& draft, const std::string& stage) {
         draft.keys[key(stage, "closed")] = dice.one_of({"[\"west\"]", "[\"north\", \"east\"]", "[\"south\"]"});
     if (!dice.chance(0.2)) return;
     const GridGeometry& g = draft.dem().geometry;
-    const auto place = [&] {
-        const double x = g.x0 + g.cell * dice.between(1.0, static_cast<double>(g.nx - 2));
-        const double y = g.y0 + g.cell * dice.between(1.0, static_cast<double>(g.ny - 2));
-        return fmt::format("[{}, {}]", toml_number(x), toml_number(y));
-    };
-    const std::string from = place();
-    draft.keys["barrier#0.line"] = fmt::format("[{}, {}]", from, place());
+    draft.keys["barrier#0.line"] = line_across(dice, g);
     say(draft, "barrier#0.height", g.cell * dice.decades(0.3, 5.0));
     if (dice.chance(0.3)) say(draft, "barrier#0.friction", dice.between(0.0, 1.0));
     if (dice.chance(0.2)) draft.keys["barrier#0.stuck"] = "true";
 }
 
 }  // namespace
+
+std::string line_across(Dice& dice, const GridGeometry& g) {
+    const auto place = [&] {
+        const double x = g.x0 + g.cell * dice.between(1.0, static_cast<double>(g.nx - 2));
+        const double y = g.y0 + g.cell * dice.between(1.0, static_cast<double>(g.ny - 2));
+        return fmt::format("[{}, {}]", toml_number(x), toml_number(y));
+    };
+    const std::string from = place();
+    return fmt::format("[{}, {}]", from, place());
+}
 
 double draw_3d(Dice& dice, Draft& draft, const std::string& stage) {
     const Scales of = scales_of(draft);
