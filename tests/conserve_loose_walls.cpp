@@ -53,17 +53,25 @@ void plant_trees(Scene& scene) {
         for (Index i = 45; i < 60; ++i) scene.forest->pressure.at(i, j) = 30.0;
 }
 
-/// Whether a barrier raises a node, or one next to it.
-std::vector<bool> footing(const Scene& scene) {
-    const Raster walled = with_barriers(scene);
+/// A rectangle, whose nodes and those half a cell from it a barrier takes.
+struct Box {
+    double x0, y0, x1, y1;
+    bool has(const GridGeometry& g, Index i, Index j) const {
+        return std::hypot(std::max({x0 - g.x(i), 0.0, g.x(i) - x1}), std::max({y0 - g.y(j), 0.0, g.y(j) - y1})) <= 0.5;
+    }
+};
+
+constexpr Box kDam{52.3, 32.2, 55.1, 47.9};
+
+/// Whether a barrier takes a node, or one next to it.
+std::vector<bool> footing(const Scene& scene, const Box& wall) {
     const GridGeometry& g = scene.bed.geometry;
     std::vector<bool> carries(scene.bed.values.size(), false);
     for (Index j = 1; j + 1 < g.ny; ++j)
         for (Index i = 1; i + 1 < g.nx; ++i)
             for (Index dj = -1; dj <= 1; ++dj)
                 for (Index di = -1; di <= 1; ++di)
-                    if (walled.at(i + di, j + dj) > scene.bed.at(i + di, j + dj))
-                        carries[static_cast<std::size_t>(j * g.nx + i)] = true;
+                    if (wall.has(g, i + di, j + dj)) carries[static_cast<std::size_t>(j * g.nx + i)] = true;
     return carries;
 }
 
@@ -71,7 +79,7 @@ std::vector<bool> footing(const Scene& scene) {
 
 TEST_CASE("What carries a barrier stays, and the ground around it is taken up", "[barrier][erosion]") {
     const Scene scene = slide();
-    const std::vector<bool> carries = footing(scene);
+    const std::vector<bool> carries = footing(scene, kDam);
     WalledColumns run(scene);
     const WalledColumns still(scene);
     const Flow& begin = still.columns().flow();
@@ -102,6 +110,68 @@ TEST_CASE("What carries a barrier stays, and the ground around it is taken up", 
     CHECK(said == remark_on_footings(static_cast<double>(firm) * kLoose));
     CHECK(said.find("m3 of loose ground under barriers") != std::string::npos);
     CHECK(remark_on_footings(0.0).empty());
+}
+
+TEST_CASE("Ground below the top of a buried barrier stays, and what lies over it is taken up", "[barrier][erosion]") {
+    const Box wall{30.2, 36.2, 44.8, 44.4};
+    constexpr double kTop = -0.125;  // on the plain below half of the loose ground; high above it is the slope
+    const Scene scene = slide([&](Scene& s) {
+        s.barriers = {wall_of(wall.x0, wall.y0, wall.x1, wall.y1, 0.0)};
+        s.barriers[0].top = kTop;
+        s.erodible->law = erosion::Growth{0.2};
+    });
+    const std::vector<bool> carries = footing(scene, wall);
+    WalledColumns run(scene);
+    const Status first = run.status();
+    run_to(run, 15.0);
+    CHECK(std::abs(budget(first, run.status()).mass_error) <= 1e-13);
+    CHECK(std::abs(budget(first, run.status()).bed_error) <= 1e-13);
+    const Frame frame = run.frame();
+    const double* change = frame.node("bed_change")->data;
+    Index to_its_top = 0, on_the_slope = 0, around = 0;
+    double firm = 0.0;
+    for (Index n = 0; n < frame.grid.size(); ++n) {
+        const double z = scene.bed.values[static_cast<std::size_t>(n)];
+        if (!carries[static_cast<std::size_t>(n)]) {
+            around += change[n] < kTop - 0.05;
+            continue;
+        }
+        REQUIRE(z + change[n] >= kTop - 1e-15);
+        to_its_top += z == 0.0 && change[n] < (1.0 - 1e-11) * kTop;  // 1e-12 of a layer stays
+        on_the_slope += z > 1.0 && change[n] < kTop;
+        firm += kLoose - std::min(kLoose, z - kTop);
+    }
+    CHECK(to_its_top > 5);
+    CHECK(on_the_slope > 20);
+    CHECK(around > 100);
+    CHECK(run.remarks().back() == remark_on_footings(firm));
+}
+
+TEST_CASE("Trees before a barrier hold back what flows, and none stand on it", "[barrier][forest]") {
+    const Scene scene = slide([](Scene& s) {
+        s.erodible.reset();
+        plant_trees(s);
+        s.barriers[0].height = 0.5;
+    });
+    WalledColumns run(scene);
+    run_to(run, 15.0);
+    REQUIRE(run.loads()->barriers.at(0).overtopped > 1.0);
+    const Frame frame = run.frame();
+    const double *left = frame.node("deposited_depth")->data, *reached = frame.node("peak_depth")->data;
+    Index over_it = 0, before = 0;
+    double on_it = 0.0, among_trees = 0.0;
+    for (Index n = 0; n < frame.grid.size(); ++n) {
+        const Index i = n % frame.grid.nx, j = n / frame.grid.nx;
+        const bool wall = kDam.has(frame.grid, i, j);
+        over_it += wall && reached[n] > 0.01;
+        if (wall) on_it = std::max(on_it, left[n]);
+        before += i < 52 && left[n] > 0.0;
+        if (!wall) among_trees = std::max(among_trees, left[n]);
+    }
+    CHECK(over_it > 10);
+    // What is held back is nearest to a node two cells away and moves by a quarter of one at most, so this is its weight here.
+    CHECK(on_it < 0.5 * 0.25 * 0.25 * among_trees);
+    CHECK(before > 100);
 }
 
 TEST_CASE("Barriers in ground that sinks and rises keep its books, on any number of threads and after a resume",
@@ -166,21 +236,33 @@ TEST_CASE("A deposit that has become ground before a barrier takes no momentum f
     CHECK(over_by(ground, 24.0) - of_ground > 2.0 * (over_by(flow, 24.0) - of_flow));
 }
 
+namespace {
+
+/// A wall on a part that grows, in loose ground.
+Scene walled_on_large() {
+    Scene scene = slide_on_large();
+    loosen(scene);
+    scene.erodible->law = erosion::Growth{0.01};
+    scene.barriers = {wall_of(3930.0, 975.0, 3945.0, 1030.0, 4.0)};
+    return scene;
+}
+
+void grow_with(Scene& scene, const std::function<GroundFields(const Raster& part)>& fields) {
+    const auto wider = std::make_shared<WiderTerrain>(*scene.wider);
+    wider->fields = fields;
+    scene.wider = wider;
+}
+
+}  // namespace
+
 TEST_CASE("Barriers in loose ground on a part that grows are those of a run on all of the terrain",
           "[barrier][erosion][terrain]") {
-    const auto edit = [](Scene& scene) {
-        loosen(scene);
-        scene.erodible->law = erosion::Growth{0.01};
-        scene.barriers = {wall_of(3930.0, 975.0, 3945.0, 1030.0, 4.0)};
-    };
-    Scene on_part = slide_on_large(), whole = slide_on_large();
-    edit(on_part);
-    const auto wider = std::make_shared<WiderTerrain>(*on_part.wider);
-    wider->fields = [](const Raster& part) { return GroundFields{{}, Raster::filled(part.geometry, kLoose), {}}; };
-    on_part.wider = wider;
+    Scene on_part = walled_on_large(), whole = walled_on_large();
+    grow_with(on_part, [](const Raster& part) { return GroundFields{{}, Raster::filled(part.geometry, kLoose), {}}; });
     whole.bed = ground_on(kLarge);
     whole.wider.reset();
-    edit(whole);
+    loosen(whole);
+    whole.erodible->law = erosion::Growth{0.01};
     WalledColumns part(on_part), all(whole);
     const Index held = part.columns().flow().grid.size();
     while (part.columns().flow().grid.size() == held) {
@@ -203,4 +285,32 @@ TEST_CASE("Barriers in loose ground on a part that grows are those of a run on a
     };
     CHECK(told(part) == 1);
     CHECK(told(all) == 1);
+}
+
+TEST_CASE("A run that grew among barriers, trees and deposits goes on after a resume with the same bits",
+          "[barrier][erosion][deposition][forest][terrain]") {
+    const auto trees_on = [](const Raster& part) { return Raster::filled(part.geometry, 20.0); };
+    Scene scene = walled_on_large();
+    leave_deposits(scene);
+    scene.forest = Forest{trees_on(scene.bed), {}};
+    grow_with(scene, [trees_on](const Raster& part) {
+        return GroundFields{{}, Raster::filled(part.geometry, kLoose), trees_on(part)};
+    });
+    WalledColumns straight(scene);
+    const Index held = straight.columns().flow().grid.size();
+    while (straight.columns().flow().grid.size() == held) {
+        straight.advance(1e9);
+        REQUIRE(straight.status().time < 60.0);
+    }
+    MemoryArchive kept;
+    straight.serialize(kept);
+    for (int step = 0; step < 40; ++step) straight.advance(1e9);
+    CHECK(straight.status().bed.eroded > 0.0);
+    CHECK(straight.status().bed.deposited > 0.0);
+    WalledColumns resumed(scene, Start::resumed);
+    resumed.serialize(kept.rewind());
+    for (int step = 0; step < 40; ++step) resumed.advance(1e9);
+    check_same(resumed.columns(), straight.columns(), "bed/fresh");
+    require_same(resumed, straight);
+    CHECK(resumed.remarks() == straight.remarks());
 }

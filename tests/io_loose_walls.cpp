@@ -39,4 +39,17 @@ TEST_CASE("A wall in loose ground: what was taken up, what went over, and what i
         }
     CHECK(under == 0.0);
     CHECK(before > 0.05);
+
+    // The ground at the end is that of the start and its change, without the dam: a run can begin on it.
+    const auto ground = [&](const char* name) {
+        return GdalReader().read_raster(dir / "rasters" / name, {0, 0, 150, 100}, "", log);
+    };
+    const Raster at_start = ground("elevation.tif"), at_end = ground("final_elevation.tif");
+    REQUIRE(at_end.geometry == change.geometry);
+    double most = 0.0;
+    for (std::size_t k = 0; k < at_end.values.size(); ++k) {
+        const double sank = std::isfinite(change.values[k]) ? change.values[k] : 0.0;
+        most = std::max(most, std::abs(at_end.values[k] - at_start.values[k] - sank));
+    }
+    CHECK(most < 1e-5);  // float32 of some 30 m
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "base/error.h"
@@ -172,9 +173,9 @@ Surface surface_for_columns(const Barrier& barrier, const Scene& scene) {
 
 }  // namespace
 
-Raster with_barriers(const Scene& scene) {
-    Raster bed = scene.bed;
-    const GridGeometry& g = bed.geometry;
+std::vector<BarrierNode> barrier_nodes(const Scene& scene) {
+    std::vector<BarrierNode> nodes;
+    const GridGeometry& g = scene.bed.geometry;
     for (const Barrier& barrier : scene.barriers) {
         const Surface solid = surface_for_columns(barrier, scene);
         const auto box = box_of(solid);
@@ -184,37 +185,63 @@ Raster with_barriers(const Scene& scene) {
                 const Vec2 node(g.x(i), g.y(j));
                 if (!near_box(box, node, 0.5 * g.cell)) continue;
                 const double top = top_near(solid, node, g.cell);
-                if (top > bed.at(i, j) && is_in_reach(solid, node, top, g.cell)) bed.at(i, j) = top;
+                if (std::isfinite(top) && is_in_reach(solid, node, top, g.cell)) nodes.push_back({i, j, top});
             }
     }
-    return bed;
-}
-
-std::vector<RaisedNode> raised_nodes(const Scene& scene) {
-    std::vector<RaisedNode> nodes;
-    if (scene.barriers.empty()) return nodes;
-    const Raster walled = with_barriers(scene);
-    const GridGeometry& g = walled.geometry;
-    for (Index j = 0; j < g.ny; ++j)
-        for (Index i = 0; i < g.nx; ++i)
-            if (walled.at(i, j) > scene.bed.at(i, j)) nodes.push_back({i, j, walled.at(i, j)});
+    const auto row_after_row = [](const BarrierNode& a, const BarrierNode& b) {
+        return std::tuple(a.j, a.i, -a.top) < std::tuple(b.j, b.i, -b.top);
+    };
+    const auto same_node = [](const BarrierNode& a, const BarrierNode& b) { return a.i == b.i && a.j == b.j; };
+    std::sort(nodes.begin(), nodes.end(), row_after_row);
+    nodes.erase(std::unique(nodes.begin(), nodes.end(), same_node), nodes.end());
     return nodes;
 }
 
-double stand_in(Scene& scene, const std::vector<RaisedNode>& raised, Index i0, Index j0) {
-    constexpr Index kFooting = 1;  // the slopes of a raised node's neighbours have its top in them
+Raster with_barriers(const Scene& scene) {
+    Raster bed = scene.bed;
+    for (const BarrierNode& node : barrier_nodes(scene))
+        if (double& z = bed.at(node.i, node.j); node.top > z) z = node.top;
+    return bed;
+}
+
+namespace {
+
+/// Calls f(i, j) for a node and its eight neighbours: the slopes of those have its top in them.
+template <class F>
+void for_footing(const BarrierNode& node, const GridGeometry& g, F&& f) {
+    const NodeBox footing = common(widened({node.i, node.j, 1, 1}, 1), NodeBox::all(g));
+    for (Index j = footing.j0; j < footing.j0 + footing.ny; ++j)
+        for (Index i = footing.i0; i < footing.i0 + footing.nx; ++i) f(i, j);
+}
+
+/// Of loose ground `depth` there stays what lies above a barrier's top. The rest [m], summed.
+double firm_up(Raster& depth, const Raster& bed, const BarrierNode& node) {
     double firm = 0.0;
-    const NodeBox all = NodeBox::all(scene.bed.geometry);
-    for (const RaisedNode& node : raised) {
-        scene.bed.at(node.i - i0, node.j - j0) = node.top;
-        if (!scene.erodible) continue;
-        Raster& loose = scene.erodible->depth;
-        const NodeBox footing = common(widened({node.i - i0, node.j - j0, 1, 1}, kFooting), all);
-        for (Index j = footing.j0; j < footing.j0 + footing.ny; ++j)
-            for (Index i = footing.i0; i < footing.i0 + footing.nx; ++i) firm += std::exchange(loose.at(i, j), 0.0);
+    for_footing(node, bed.geometry, [&](Index i, Index j) {
+        const double z = bed.at(i, j);
+        if (std::isnan(z)) return;
+        const double left = std::min(depth.at(i, j), std::max(0.0, z - node.top));
+        firm += std::exchange(depth.at(i, j), left) - left;
+    });
+    return firm;
+}
+
+}  // namespace
+
+double stand_in(Scene& scene, const std::vector<BarrierNode>& nodes, Index i0, Index j0) {
+    const GridGeometry g = scene.bed.geometry;
+    std::vector<BarrierNode> here = nodes;
+    for (BarrierNode& node : here) node.i -= i0, node.j -= j0;
+    double firm = 0.0;
+    if (scene.erodible)
+        for (const BarrierNode& node : here) firm += firm_up(scene.erodible->depth, scene.bed, node);
+    for (const BarrierNode& node : here) {
+        double& z = scene.bed.at(node.i, node.j);
+        if (!(node.top > z)) continue;
+        z = node.top;
+        if (scene.forest) for_footing(node, g, [&](Index i, Index j) { scene.forest->pressure.at(i, j) = 0.0; });
     }
-    const double cell = scene.bed.geometry.cell;
-    return firm * cell * cell;
+    return firm * g.cell * g.cell;
 }
 
 std::string remark_on_footings(double volume) {

@@ -23,19 +23,19 @@ Prism solid_of(const Barrier& barrier, const Raster& bed, double cell);
 /// top.
 Raster with_barriers(const Scene& scene);
 
-/// A node that a barrier raises for columns.
-struct RaisedNode {
+/// A node within a barrier, or within half a cell of it.
+struct BarrierNode {
     Index i, j;
-    double top;  ///< [m]
+    double top;  ///< of the highest barrier there [m]
 };
 
-/// All nodes that with_barriers() raises, row after row.
-std::vector<RaisedNode> raised_nodes(const Scene& scene);
+/// All of them, row after row. A barrier may lie below the bed, and then raises nothing.
+std::vector<BarrierNode> barrier_nodes(const Scene& scene);
 
-/// Puts the tops of those nodes into a scene whose first node is (i0, j0) of the one they were found in. The ground under them
-/// and a cell around is firm from then on: a barrier that stands has a footing that holds. Loose ground so far there [m3].
-/// Where a barrier does not rise above the bed, its ground stays loose.
-double stand_in(Scene& scene, const std::vector<RaisedNode>& raised, Index i0, Index j0);
+/// Puts barriers into a scene whose first node is (i0, j0) of the one that their nodes were found in. The bed rises to their
+/// tops, and no tree stands there or a cell around. Ground below a top, under it and a cell around, is firm from then on: a
+/// barrier that stands has a footing that holds. Loose ground so far there [m3].
+double stand_in(Scene& scene, const std::vector<BarrierNode>& nodes, Index i0, Index j0);
 
 /// What a report says of loose ground that stand_in() took for firm; nothing without any.
 std::string remark_on_footings(double volume);

@@ -30,7 +30,7 @@ void lay_over(Raster& bed, const Raster& part, Index i0, Index j0) {
 GrowingColumns::GrowingColumns(const Scene& scene, Start start)
     : scene_(scene), wider_(scene.wider), held_(wider_->held) {
     scene_.wider.reset();  // what the columns have is all that they know of
-    find_raised();
+    find_barriers();
     columns_ = columns_among_walls(start);
     shown_ = cells_of(wider_->shown, wider_->grid);
     const std::vector<double>& volume = scene_.particles.volume;
@@ -41,15 +41,15 @@ GrowingColumns::GrowingColumns(const Scene& scene, Start start)
 }
 
 /// Barriers stand on the part that the run begins with: a larger one has the same tops, to the last bit.
-void GrowingColumns::find_raised() {
-    raised_ = raised_nodes(scene_);
-    for (RaisedNode& node : raised_) node.i += held_.i0, node.j += held_.j0;
+void GrowingColumns::find_barriers() {
+    barrier_nodes_ = barrier_nodes(scene_);
+    for (BarrierNode& node : barrier_nodes_) node.i += held_.i0, node.j += held_.j0;
 }
 
 std::unique_ptr<DepthAveraged> GrowingColumns::columns_among_walls(Start start) {
-    if (raised_.empty()) return std::make_unique<DepthAveraged>(scene_, start);
+    if (barrier_nodes_.empty()) return std::make_unique<DepthAveraged>(scene_, start);
     Scene walled = scene_;
-    remark_ = remark_on_footings(stand_in(walled, raised_, held_.i0, held_.j0));
+    remark_ = remark_on_footings(stand_in(walled, barrier_nodes_, held_.i0, held_.j0));
     return std::make_unique<DepthAveraged>(walled, start);
 }
 

@@ -28,7 +28,7 @@ private:
     Simulation& inner() const override { return *columns_; }
 
     void show_part();
-    void find_raised();
+    void find_barriers();
     std::unique_ptr<DepthAveraged> columns_among_walls(Start start);
     void sample();
     NodeBox room_for(const NodeBox& worked, Index clear) const;
@@ -39,10 +39,10 @@ private:
 
     Scene scene_;
     std::shared_ptr<const WiderTerrain> wider_;
-    NodeBox held_;                    ///< the scene's bed, of the whole terrain
-    NodeBox shown_;                   ///< nodes of the whole terrain that frames show
-    std::vector<RaisedNode> raised_;  ///< all that barriers raise, of the whole terrain
-    std::string remark_;              ///< on what carries the barriers
+    NodeBox held_;                            ///< the scene's bed, of the whole terrain
+    NodeBox shown_;                           ///< nodes of the whole terrain that frames show
+    std::vector<BarrierNode> barrier_nodes_;  ///< those of barriers, of the whole terrain
+    std::string remark_;                      ///< on what carries the barriers
     std::unique_ptr<DepthAveraged> columns_;
     Index times_grown_ = 0;
     bool aside_ = false;  ///< it comes back to a state that was put aside: until then there is room enough

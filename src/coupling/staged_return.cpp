@@ -92,7 +92,8 @@ std::optional<Vec2> StagedRun::nearest_before(const DepartedPoint& point, const 
 void StagedRun::mark_raised() {
     const GridGeometry& g = scene_.bed.geometry;
     raised_.assign(static_cast<std::size_t>(g.size()), 0);
-    for (const RaisedNode& node : raised_nodes(scene_)) {
+    for (const BarrierNode& node : barrier_nodes(scene_)) {
+        if (!(node.top > scene_.bed.at(node.i, node.j))) continue;
         const NodeBox around = common(widened({node.i, node.j, 1, 1}, 1), NodeBox::all(g));
         for (Index j = around.j0; j < around.j0 + around.ny; ++j)
             for (Index i = around.i0; i < around.i0 + around.nx; ++i)

@@ -12,7 +12,7 @@ WalledColumns::WalledColumns(const Scene& scene, Start start) : density_(scene.d
 }
 
 void WalledColumns::hold_all(Scene scene, Start start) {
-    const double firm = stand_in(scene, raised_nodes(scene), 0, 0);
+    const double firm = stand_in(scene, barrier_nodes(scene), 0, 0);
     remark_ = remark_on_footings(firm);
     whole_ = std::make_unique<DepthAveraged>(scene, start);
 }

@@ -77,12 +77,20 @@ double memory_of(const Friction& friction, double nodes) {
                         friction.laws.laws);
 }
 
+/// Columns begin from a copy of the fields that barriers stand in.
+double memory_of_fields_among_barriers(const Scene& scene, double nodes) {
+    const double fields =
+        1.0 + (scene.erodible ? 1.0 : 0.0) + (scene.forest ? 1.0 : 0.0);  // the bed, and those of nodes
+    return sizeof(double) * fields * nodes;
+}
+
 double memory_of_fields(const Scene& scene, double nodes) {
     double bytes = 0.0;
     if (scene.bed_changes()) bytes += (scene.bed_evolves() ? erodible_rate + path_rate : erodible_rate) * nodes;
     if (scene.deposition || scene.forest) bytes += deposition_rate * nodes;
     if (scene.forest) bytes += forest_rate * nodes;
     if (scene.friction) bytes += memory_of(*scene.friction, nodes);
+    if (!scene.barriers.empty() && !scene.solid) bytes += memory_of_fields_among_barriers(scene, nodes);
     return bytes;
 }
 

@@ -107,7 +107,8 @@ void remark_on_depth(const CaseFile& file, const Raster& depth, Scene& scene) {
         scene.log.push_back(
             fmt::format("{}: the loose material is up to {:.3g} m deep; is that a depth, and in metres?",
                         file.place("erodible.depth"), deepest));
-    scene.log.push_back(fmt::format("erodible: up to {:.6g} m3 of loose material can be taken up{}", volume,
+    scene.log.push_back(fmt::format("erodible: up to {:.6g} m3 of loose material can be taken up{}{}", volume,
+                                    scene.barriers.empty() ? "" : ", less what barriers stand on",
                                     scene.wider ? " around the releases; what lies farther on is not counted" : ""));
 }
 

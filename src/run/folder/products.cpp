@@ -20,6 +20,8 @@ namespace frana {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr const char *kElevation = "elevation", *kFinalElevation = "final_elevation";
+
 /// How a node field becomes a raster.
 struct ProductRule {
     const char* name;
@@ -43,7 +45,7 @@ constexpr ProductRule rules[] = {
     {"deposited_depth", "deposited_depth", 0, "m",
      "depth of what the flow left on the bed and lies there at the end, along gravity"},
     {"bed_change", "bed_change", 0, "m", "deposited depth less eroded depth"},
-    {"final_elevation", "elevation", 0, "m", "elevation of the bed at the end of the run", false},
+    {kFinalElevation, kElevation, 0, "m", "elevation of the bed at the end of the run", false},
     {"final_damage", "damage", 0, "1", "damage at the end of the run: 0 whole, 1 grains; where material lies", false},
     {"final_water_depth", "water_depth", 0, "m", "depth of free water at the end of the run, along gravity"},
 };
@@ -72,18 +74,16 @@ Raster raster_of(const Frame& frame, const ProductRule& rule, const std::string&
 /// Not every solver knows it; all others must be there.
 bool needed(const std::string& name) {
     for (const char* other : {"peak_dynamic_pressure", "final_damage", "final_water_depth", "eroded_depth",
-                              "deposited_depth", "bed_change", "final_elevation"})
+                              "deposited_depth", "bed_change", kFinalElevation})
         if (name == other) return false;
     return true;
 }
 
 /// The bed is shown again where it may have changed.
 bool is_of(const Frame& last, const ProductRule& rule) {
-    if (std::string(rule.name) == "final_elevation") return last.node("bed_change") != nullptr;
+    if (std::string(rule.name) == kFinalElevation) return last.node("bed_change") != nullptr;
     return last.node(rule.field) != nullptr || needed(rule.name);
 }
-
-constexpr const char* kElevation = "elevation";
 
 bool is_of_flow(const std::string& name) {
     const auto* rule = std::find_if(std::begin(rules), std::end(rules), [&](const auto& r) { return name == r.name; });
@@ -126,6 +126,17 @@ std::vector<ProductRaster> product_rasters(const Frame& last, const std::string&
         if (is_of(last, rule))
             rasters.push_back({rule.name, rule.unit, rule.description, raster_of(last, rule, crs_wkt)});
     return rasters;
+}
+
+void take_barriers_off(std::vector<ProductRaster>& rasters, const Raster& bed) {
+    const ProductRaster* const change = find_product(rasters, "bed_change");
+    for (ProductRaster& product : rasters) {
+        if (product.name != kFinalElevation || change == nullptr) continue;
+        std::vector<double>& z = product.raster.values;
+        expect(bed.values.size() == z.size(), "rasters and the bed that they show have the same nodes");
+        for (std::size_t node = 0; node < z.size(); ++node)
+            if (!std::isnan(z[node])) z[node] = bed.values[node] + change->raster.values[node];
+    }
 }
 
 std::vector<ProductRaster> friction_rasters(const Friction& friction, const Raster& bed) {
