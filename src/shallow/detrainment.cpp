@@ -80,7 +80,7 @@ void Erosion::lose(Flow& flow, Index n, double dt) {
         if (!any(moves)) return;
         const Double4 depth = max(none, load(&held.depth[p], lanes));
         const MeansOfFour means(flow.grid, x, y);
-        const GroundOfFour ground(flow, false, means, lanes, select(moves, vx, one), select(moves, vy, none), depth);
+        const GroundOfFour ground(flow, false, means, select(moves, vx, one), select(moves, vy, none), depth);
         for (int lane = 0; lane < lanes; ++lane) {
             if (!moves[lane]) continue;
             const double speed = ground.speed[lane];

@@ -287,12 +287,12 @@ void Erosion::find_demand(Flow& flow, double dt) {
 /// What a law sees below four points besides their ground: how much was taken, and what is left. kFresh: material may have
 /// been left behind, that a law has not taken yet.
 template <class Law, bool kFresh>
-void Erosion::see_layer(const MeansOfFour& means, int lanes, Double4 cosine, erosion::StateOf<Double4>& state) const {
+void Erosion::see_layer(const MeansOfFour& means, Double4 cosine, erosion::StateOf<Double4>& state) const {
     if constexpr (!Law::kSeesEroded && !Law::kSeesLeft) return;
-    const Double4 still = means.of(left_, lanes), scale = per_area_ * cosine;
+    const Double4 still = means.of(left_), scale = per_area_ * cosine;
     Double4 lies = {};
-    if constexpr (kFresh) lies = per_area_of_flow_ * cosine * means.of(fresh_, lanes);
-    if constexpr (Law::kSeesEroded) state.eroded = scale * (means.of(initial_, lanes) - still) - lies;
+    if constexpr (kFresh) lies = per_area_of_flow_ * cosine * means.of(fresh_);
+    if constexpr (Law::kSeesEroded) state.eroded = scale * (means.of(initial_) - still) - lies;
     if constexpr (Law::kSeesLeft) state.left = scale * still + lies;
 }
 
@@ -316,12 +316,12 @@ void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, con
         const Double4 u = select(moves, on_map, one), ux = select(moves, vx, one), uy = select(moves, vy, none);
         const Double4 deep = select(moves, depth, one);
         // A curved bed changes the weight alone, which only friction and laws of it ask for.
-        const GroundOfFour ground(flow, curved_ && feels, means, lanes, ux, uy, deep);
+        const GroundOfFour ground(flow, curved_ && feels, means, ux, uy, deep);
         erosion::StateOf<Double4> state;
         state.density = flow.density, state.bed_density = density_, state.dt = dt;
         state.thickness = ground.below.thickness;
         state.normal_gravity = ground.below.kappa * ground.below.normal_gravity;
-        see_layer<Law, kFresh>(means, lanes, ground.below.cosine, state);
+        see_layer<Law, kFresh>(means, ground.below.cosine, state);
         if constexpr (Law::kSeesLeft) state.edge = sqrt(select(moves, mass / (flow.density * deep), one));
         Double4 at_middle = one, gain = none, brake = none;  // the speed in the middle, over that at hand
         for (const bool middle : {true, false}) {

@@ -65,7 +65,7 @@ private:
     template <class Law, class Friction, class Real, bool kFresh>
     void demand_of_tile(Flow& flow, Index n, double dt, const Law& law, const Friction& friction);
     template <class Law, bool kFresh>
-    void see_layer(const MeansOfFour& means, int lanes, Double4 cosine, erosion::StateOf<Double4>& state) const;
+    void see_layer(const MeansOfFour& means, Double4 cosine, erosion::StateOf<Double4>& state) const;
     template <class Real>
     void spread(const Flow& flow, Index n, const Array& masses, LazyArray<double>& into);
     template <class Real>

@@ -17,12 +17,14 @@ public:
         transpose(sx.w[0], sx.w[1], sx.w[2], Double4{}, along_);
         for (int j = 0; j < 3; ++j) across_[j] = sy.w[j];
     }
-    [[gnu::always_inline]] Double4 of(const LazyArray<double>& nodes, int lanes) const {
-        Double4 rows[4] = {}, parts[4];
-        for (int lane = 0; lane < lanes; ++lane) {
+    /// Where there are fewer than four points, the other lanes have numbers of the grid's first node.
+    [[gnu::always_inline]] Double4 of(const LazyArray<double>& nodes) const {
+        Double4 rows[4], parts[4];
+        for (int lane = 0; lane < 4; ++lane) {
             const double* row = nodes.data() + node_[lane];
-            for (int j = 0; j < 3; ++j, row += stride_) rows[lane] += across_[j][lane] * load(row);
-            rows[lane] *= along_[lane];
+            const Double4 sum = (across_[0][lane] * load(row) + across_[1][lane] * load(row + stride_)) +
+                                across_[2][lane] * load(row + 2 * stride_);
+            rows[lane] = along_[lane] * sum;
         }
         transpose(rows[0], rows[1], rows[2], rows[3], parts);
         return parts[0] + parts[1] + parts[2];
@@ -38,15 +40,14 @@ private:
 struct GroundOfFour {
     BedStateOf<Double4> below;
     Double4 speed;
-    [[gnu::always_inline]] GroundOfFour(const Flow& flow, bool curved, const MeansOfFour& means, int lanes, Double4 vx,
-                                        Double4 vy, Double4 depth) {
+    [[gnu::always_inline]] GroundOfFour(const Flow& flow, bool curved, const MeansOfFour& means, Double4 vx, Double4 vy,
+                                        Double4 depth) {
         const Double4 one = all(1.0), none = {};
         Double4 bx = none, by = none, gravity = all(flow.gravity);
-        if (flow.steep) bx = means.of(flow.bed.slope_x, lanes), by = means.of(flow.bed.slope_y, lanes);
+        if (flow.steep) bx = means.of(flow.bed.slope_x), by = means.of(flow.bed.slope_y);
         if (curved)
-            gravity =
-                max(none, gravity + vx * vx * means.of(flow.bed.hxx, lanes) +
-                              2.0 * vx * vy * means.of(flow.bed.hxy, lanes) + vy * vy * means.of(flow.bed.hyy, lanes));
+            gravity = max(none, gravity + vx * vx * means.of(flow.bed.hxx) + 2.0 * vx * vy * means.of(flow.bed.hxy) +
+                                    vy * vy * means.of(flow.bed.hyy));
         const Double4 on_map2 = vx * vx + vy * vy, rise = vx * bx + vy * by;
         const Double4 kappa = sqrt(one + rise * rise / on_map2), cosine = one / sqrt(one + bx * bx + by * by);
         speed = kappa * sqrt(on_map2);

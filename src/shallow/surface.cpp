@@ -153,7 +153,7 @@ struct KnownRows {
     /// Nodes of row j that have two known ones in a row in some direction.
     std::uint32_t next_to_two(Index j) const {
         std::uint32_t any = 0;
-        for (int dj = -1; dj <= 1; ++dj) {
+        for (Index dj = -1; dj <= 1; ++dj) {
             const std::uint32_t near = row[j + 3 + dj], far = row[j + 3 + 2 * dj];
             if (dj != 0) any |= near & far;
             any |= (near << 1 & far << 2) | (near >> 1 & far >> 2);
@@ -178,8 +178,8 @@ bool extrapolate(const Flow& flow, Index k, Index i, Index j, const KnownRows& k
     // A front in motion has a tip that bends so. Between the two not at once, or round-off would choose.
     const double rests = resting(nodes.before[k], creeps);
     double sum = 0.0, weights = 0.0;
-    for (int dj = -1; dj <= 1; ++dj)
-        for (int di = -1; di <= 1; ++di) {
+    for (Index dj = -1; dj <= 1; ++dj)
+        for (Index di = -1; di <= 1; ++di) {
             if (di == 0 && dj == 0) continue;
             const Index step = dj * up + di, p = k + step, q = p + step, r = q + step;
             if (!known(i + di, j + dj) || !known(i + 2 * di, j + 2 * dj)) continue;
