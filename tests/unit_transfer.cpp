@@ -156,6 +156,8 @@ void wall_holes(Scene& scene) {
     scene.hole_top = 5.0;
 }
 
+namespace {
+
 /// Points on nodes that move, before they gather.
 struct OnTheirWay {
     OnTheirWay(const Scene& scene, bool one_by_one)
@@ -166,6 +168,8 @@ struct OnTheirWay {
     std::unique_ptr<TransferKernel> transfer;
     Crowd crowd;
 };
+
+}  // namespace
 
 TEST_CASE("What a hole's wall sets back counts in how far points came", "[transfer][holes]") {
     Scene scene = scene_with(Sides::open, false, true);

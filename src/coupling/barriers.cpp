@@ -157,11 +157,10 @@ Surface surface_of(const Barrier& barrier, const Raster& bed, double cell) {
 
 namespace {
 
-/// Of a barrier as columns meet it. Where there are many, each holds the ground around itself alone.
+/// Of a barrier as columns meet it. It holds the ground around itself alone: terrains are large, and barriers many.
 Surface surface_for_columns(const Barrier& barrier, const Scene& scene) {
-    constexpr std::size_t kFew = 24;  // these hold all of the ground: their tops are interpolated as in space
     const double cell = cell_for_columns(barrier, scene);
-    if (scene.barriers.size() <= kFew || barrier.shape) return surface_of(barrier, scene.bed, cell);
+    if (barrier.shape) return surface_of(barrier, scene.bed, cell);
     std::vector<Vec2> corners;
     const Polygons plan = plan_of(barrier, cell);
     for (const Polygon& polygon : plan.parts)
@@ -185,6 +184,7 @@ std::vector<BarrierNode> barrier_nodes(const Scene& scene) {
                 const Vec2 node(g.x(i), g.y(j));
                 if (!near_box(box, node, 0.5 * g.cell)) continue;
                 const double top = top_near(solid, node, g.cell);
+                if (std::isnan(scene.bed.at(i, j))) continue;  // no ground to stand on
                 if (std::isfinite(top) && is_in_reach(solid, node, top, g.cell)) nodes.push_back({i, j, top});
             }
     }
@@ -228,28 +228,38 @@ double firm_up(Raster& depth, const Raster& bed, const BarrierNode& node) {
 
 }  // namespace
 
-double stand_in(Scene& scene, const std::vector<BarrierNode>& nodes, Index i0, Index j0) {
+Footings stand_in(Scene& scene, const std::vector<BarrierNode>& nodes, Index i0, Index j0) {
     const GridGeometry g = scene.bed.geometry;
+    const double area = g.cell * g.cell;
     std::vector<BarrierNode> here = nodes;
     for (BarrierNode& node : here) node.i -= i0, node.j -= j0;
-    double firm = 0.0;
+    Footings footings;
     if (scene.erodible)
-        for (const BarrierNode& node : here) firm += firm_up(scene.erodible->depth, scene.bed, node);
+        for (const BarrierNode& node : here) footings.firm += area * firm_up(scene.erodible->depth, scene.bed, node);
     for (const BarrierNode& node : here) {
         double& z = scene.bed.at(node.i, node.j);
         if (!(node.top > z)) continue;
         z = node.top;
-        if (scene.forest) for_footing(node, g, [&](Index i, Index j) { scene.forest->pressure.at(i, j) = 0.0; });
+        if (!scene.forest) continue;
+        for_footing(node, g, [&](Index i, Index j) {
+            if (std::exchange(scene.forest->pressure.at(i, j), 0.0) > 0.0) footings.cleared += area;
+        });
     }
-    return firm * g.cell * g.cell;
+    return footings;
 }
 
-std::string remark_on_footings(double volume) {
-    if (!(volume > 0.0)) return {};
-    return fmt::format(
-        "erodible: {:.6g} m3 of loose ground under barriers and a cell around them is taken for firm, or it "
-        "would be carried away from under them; no scour at their foot is foretold",
-        volume);
+std::vector<std::string> remarks_on(const Footings& footings) {
+    std::vector<std::string> all;
+    if (footings.firm > 0.0)
+        all.push_back(fmt::format(
+            "erodible: {:.6g} m3 of loose ground under barriers and a cell around them is taken for firm, or it "
+            "would be carried away from under them; no scour at their foot is foretold",
+            footings.firm));
+    if (footings.cleared > 0.0)
+        all.push_back(
+            fmt::format("forest: no trees stand on barriers and a cell around them, on {:.4g} ha that had some",
+                        1e-4 * footings.cleared));
+    return all;
 }
 
 BarrierTiles::BarrierTiles(const GridGeometry& grid, const std::vector<std::pair<Vec3, Vec3>>& boxes, double margin)

@@ -32,13 +32,19 @@ struct BarrierNode {
 /// All of them, row after row. A barrier may lie below the bed, and then raises nothing.
 std::vector<BarrierNode> barrier_nodes(const Scene& scene);
 
+/// What barriers stand on.
+struct Footings {
+    double firm = 0.0;     ///< ground that was loose [m3]
+    double cleared = 0.0;  ///< where trees stood [m2]
+};
+
 /// Puts barriers into a scene whose first node is (i0, j0) of the one that their nodes were found in. The bed rises to their
 /// tops, and no tree stands there or a cell around. Ground below a top, under it and a cell around, is firm from then on: a
-/// barrier that stands has a footing that holds. Loose ground so far there [m3].
-double stand_in(Scene& scene, const std::vector<BarrierNode>& nodes, Index i0, Index j0);
+/// barrier that stands has a footing that holds.
+Footings stand_in(Scene& scene, const std::vector<BarrierNode>& nodes, Index i0, Index j0);
 
-/// What a report says of loose ground that stand_in() took for firm; nothing without any.
-std::string remark_on_footings(double volume);
+/// What a report says of them; nothing without any.
+std::vector<std::string> remarks_on(const Footings& footings);
 
 /// A barrier of that scene as a 3D surface. Throws as solid_of().
 Surface surface_of(const Barrier& barrier, const Raster& bed, double cell);

@@ -49,7 +49,7 @@ void GrowingColumns::find_barriers() {
 std::unique_ptr<DepthAveraged> GrowingColumns::columns_among_walls(Start start) {
     if (barrier_nodes_.empty()) return std::make_unique<DepthAveraged>(scene_, start);
     Scene walled = scene_;
-    remark_ = remark_on_footings(stand_in(walled, barrier_nodes_, held_.i0, held_.j0));
+    footings_ = stand_in(walled, barrier_nodes_, held_.i0, held_.j0);
     return std::make_unique<DepthAveraged>(walled, start);
 }
 
@@ -152,7 +152,7 @@ Status GrowingColumns::frame_status() {
 
 std::vector<std::string> GrowingColumns::remarks() const {
     std::vector<std::string> all = columns_->remarks();
-    if (!remark_.empty()) all.push_back(remark_);
+    for (const std::string& remark : remarks_on(footings_)) all.push_back(remark);
     const GridGeometry& g = wider_->grid;
     const auto extent = scene_.bed.geometry.pixel_extent();
     all.push_back(

@@ -12,14 +12,13 @@ WalledColumns::WalledColumns(const Scene& scene, Start start) : density_(scene.d
 }
 
 void WalledColumns::hold_all(Scene scene, Start start) {
-    const double firm = stand_in(scene, barrier_nodes(scene), 0, 0);
-    remark_ = remark_on_footings(firm);
+    footings_ = stand_in(scene, barrier_nodes(scene), 0, 0);
     whole_ = std::make_unique<DepthAveraged>(scene, start);
 }
 
 std::vector<std::string> WalledColumns::remarks() const {
     std::vector<std::string> all = inner().remarks();
-    if (!remark_.empty()) all.push_back(remark_);
+    for (const std::string& remark : remarks_on(footings_)) all.push_back(remark);
     return all;
 }
 

@@ -108,8 +108,8 @@ void remark_on_depth(const CaseFile& file, const Raster& depth, Scene& scene) {
             fmt::format("{}: the loose material is up to {:.3g} m deep; is that a depth, and in metres?",
                         file.place("erodible.depth"), deepest));
     scene.log.push_back(fmt::format("erodible: up to {:.6g} m3 of loose material can be taken up{}{}", volume,
-                                    scene.barriers.empty() ? "" : ", less what barriers stand on",
-                                    scene.wider ? " around the releases; what lies farther on is not counted" : ""));
+                                    scene.wider ? " around the releases; what lies farther on is not counted" : "",
+                                    scene.barriers.empty() ? "" : "; what barriers stand on is counted, but stays"));
 }
 
 /// What ploughs takes all that lies in its way: that has to end somewhere.

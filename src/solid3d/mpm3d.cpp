@@ -155,13 +155,13 @@ void Mpm3d::mark_near() {
     if (surfaces == 0) return;
     const auto box = [&](Index tile, double before, double behind) {
         const std::array<Index, 3> t = grid.tile_place(tile);
-        std::pair<Vec3, Vec3> box;
+        std::pair<Vec3, Vec3> corners;
         for (int axis = 0; axis < 3; ++axis) {
             const double first = static_cast<double>(grid.first_node(t[axis]));
-            box.first[axis] = grid.geometry().origin[axis] + h * (first - before);
-            box.second[axis] = grid.geometry().origin[axis] + h * (first + static_cast<double>(kTile3d) + behind);
+            corners.first[axis] = grid.geometry().origin[axis] + h * (first - before);
+            corners.second[axis] = grid.geometry().origin[axis] + h * (first + static_cast<double>(kTile3d) + behind);
         }
-        return box;
+        return corners;
     };
     for (Index n = 0; n < body_.active.count(); ++n) {
         // A point whose first node is n lies from n + 1/2 to n + 3/2.

@@ -89,12 +89,12 @@ struct MirrorParticle {
     /// In corners of free surfaces: normals of those that it is a mirror particle in, as its point sees them (see
     /// without_shear).
     int slides;
-    Vec3 slide[3];
+    std::array<Vec3, 3> slide;
     /// A free surface turns the shear beside it round: the mirror particle shows the speed along the surface with a
     /// kink there. The surface itself asks for none of that. But the other one of a corner takes it for motion, and
     /// would drive what shears. So a mirror particle in a corner shows its point's speed along the surface everywhere.
     Mat3 without_shear(Mat3 gradient) const {
-        for (const Vec3* n = slide; n < slide + slides; ++n) {
+        for (const Vec3* n = slide.data(); n < slide.data() + slides; ++n) {
             const Vec3 across = gradient * *n;
             gradient -= (across - n->dot(across) * *n) * n->transpose();
         }

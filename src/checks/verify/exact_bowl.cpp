@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace frana::verify {
 namespace {
 
-constexpr double kGravity = 9.81, kLength = 4.0, kMiddle = 2.0;
+using constants::kGravity;
+constexpr double kBowlLength = 4.0, kBowlMiddle = 2.0;
 constexpr double kPrinted = 5e-9;  ///< half a unit of the eighth digit after the point, as printed
 
 double square(double x) { return x * x; }
@@ -44,7 +47,7 @@ double volume_at(const Bowl& bowl, double t) {
     double sum = 0.0;
     for (int j = 0; j < lines; ++j) {
         const double y = bowl.width * (j + 0.5) / lines;
-        const auto h = [&](double s) { return bowl.at(kMiddle + s, y, t).depth; };
+        const auto h = [&](double s) { return bowl.at(kBowlMiddle + s, y, t).depth; };
         const double c0 = h(0), c1 = 0.5 * (h(1) - h(-1)), c2 = 0.5 * (h(1) + h(-1)) - c0;
         const double roots = c1 * c1 - 4 * c0 * c2;
         if (roots > 0.0) sum += roots * std::sqrt(roots) / (6 * c2 * c2);
@@ -56,7 +59,7 @@ double volume_at(const Bowl& bowl, double t) {
 template <class State>
 double energy_of(const Bowl& bowl, const State& state) {
     constexpr int parts = 400;
-    const double s = kLength / parts;
+    const double s = kBowlLength / parts;
     double sum = 0.0;
     for (int j = 0; j < static_cast<int>(std::lround(bowl.width / s)); ++j)
         for (int i = 0; i < parts; ++i) {
@@ -78,14 +81,18 @@ Bowl planar_bowl() {
     bowl.period = 2 * M_PI / omega;
     bowl.volume = 0.5 * M_PI * h0 * a * a;
     bowl.swing = 2 * bowl.volume * kGravity * h0 * eta * eta / (a * a);  // as much lift as motion
-    bowl.bed = [](double x, double y) { return -h0 * (1 - (square(x - kMiddle) + square(y - kMiddle)) / (a * a)); };
-    bowl.rest = [](double x, double y) { return h0 * (1 - (square(x - kMiddle) + square(y - kMiddle)) / (a * a)); };
+    bowl.bed = [](double x, double y) {
+        return -h0 * (1 - (square(x - kBowlMiddle) + square(y - kBowlMiddle)) / (a * a));
+    };
+    bowl.rest = [](double x, double y) {
+        return h0 * (1 - (square(x - kBowlMiddle) + square(y - kBowlMiddle)) / (a * a));
+    };
     bowl.at = [omega, bed = bowl.bed](double x, double y, double t) {
         const double c = std::cos(omega * t), s = std::sin(omega * t);
-        const double surface = eta * h0 / (a * a) * (2 * (x - kMiddle) * c + 2 * (y - kMiddle) * s - eta);
+        const double surface = eta * h0 / (a * a) * (2 * (x - kBowlMiddle) * c + 2 * (y - kBowlMiddle) * s - eta);
         return BowlState{surface - bed(x, y), -eta * omega * s, eta * omega * c};
     };
-    bowl.centre_x = [omega](double t) { return kMiddle + eta * std::cos(omega * t); };
+    bowl.centre_x = [omega](double t) { return kBowlMiddle + eta * std::cos(omega * t); };
     bowl.published = {{"turning rate, printed 1.40071410", omega - 1.40071410, kPrinted},
                       {"three periods, printed 13.45710440", 3 * bowl.period - 13.45710440, kPrinted},
                       {"speed, printed 0.700357", eta * omega - 0.700357, 5e-7}};
@@ -105,20 +112,21 @@ Bowl radial_bowl() {
     bowl.period = 2 * M_PI / omega;
     bowl.volume = 0.5 * M_PI * h0 * a * a;
     bowl.swing = energy(h0 * std::sqrt((1 + A) / (1 - A)), steepness * (1 + A) / (1 - A)) - energy(h0, steepness);
-    bowl.bed = [](double x, double y) { return -h0 + steepness * (square(x - kMiddle) + square(y - kMiddle)); };
-    bowl.rest = [](double x, double y) { return h0 - steepness * (square(x - kMiddle) + square(y - kMiddle)); };
+    bowl.bed = [](double x, double y) { return -h0 + steepness * (square(x - kBowlMiddle) + square(y - kBowlMiddle)); };
+    bowl.rest = [](double x, double y) { return h0 - steepness * (square(x - kBowlMiddle) + square(y - kBowlMiddle)); };
     bowl.at = [omega, bed = bowl.bed](double x, double y, double t) {
-        const double dx = x - kMiddle, dy = y - kMiddle, c = 1 - A * std::cos(omega * t);
+        const double dx = x - kBowlMiddle, dy = y - kBowlMiddle, c = 1 - A * std::cos(omega * t);
         const double r2 = (dx * dx + dy * dy) / (a * a);
         const double surface = h0 * (std::sqrt(1 - A * A) / c - 1 - r2 * ((1 - A * A) / (c * c) - 1));
         const double rate = 0.5 * omega * A * std::sin(omega * t) / c;
         return BowlState{surface - bed(x, y), rate * dx, rate * dy};
     };
-    bowl.centre_x = [](double) { return kMiddle; };
-    bowl.published = {{"A, printed 0.21951220", A - 0.21951220, kPrinted},
-                      {"rate, printed 2.80142821", omega - 2.80142821, kPrinted},
-                      {"three periods, printed 6.72855220", 3 * bowl.period - 6.72855220, kPrinted},
-                      {"depth in the middle, 0.125 exactly", bowl.at(kMiddle, kMiddle, 0).depth - 0.125, 1e-15}};
+    bowl.centre_x = [](double) { return kBowlMiddle; };
+    bowl.published = {
+        {"A, printed 0.21951220", A - 0.21951220, kPrinted},
+        {"rate, printed 2.80142821", omega - 2.80142821, kPrinted},
+        {"three periods, printed 6.72855220", 3 * bowl.period - 6.72855220, kPrinted},
+        {"depth in the middle, 0.125 exactly", bowl.at(kBowlMiddle, kBowlMiddle, 0).depth - 0.125, 1e-15}};
     return bowl;
 }
 
@@ -130,13 +138,13 @@ Bowl parabolic_trough() {
     bowl.period = 2 * M_PI / omega;
     bowl.volume = 4.0 / 3.0 * h0 * a * bowl.width;
     bowl.swing = bowl.volume * kGravity * h0 * reach * reach / (a * a);
-    bowl.bed = [](double x, double) { return h0 * (square((x - kMiddle) / a) - 1); };
-    bowl.rest = [](double x, double) { return h0 * (1 - square((x - kMiddle) / a)); };
+    bowl.bed = [](double x, double) { return h0 * (square((x - kBowlMiddle) / a) - 1); };
+    bowl.rest = [](double x, double) { return h0 * (1 - square((x - kBowlMiddle) / a)); };
     bowl.at = [omega](double x, double, double t) {
-        const double from_centre = (x - kMiddle + reach * std::cos(omega * t)) / a;
+        const double from_centre = (x - kBowlMiddle + reach * std::cos(omega * t)) / a;
         return BowlState{h0 * (1 - square(from_centre)), reach * omega * std::sin(omega * t), 0.0};
     };
-    bowl.centre_x = [omega](double t) { return kMiddle - reach * std::cos(omega * t); };
+    bowl.centre_x = [omega](double t) { return kBowlMiddle - reach * std::cos(omega * t); };
     bowl.published = {{"largest speed, printed 1.56604598", reach * omega - 1.56604598, kPrinted},
                       {"five periods, printed 10.03033340", 5 * bowl.period - 10.03033340, kPrinted}};
     return bowl;

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace frana::verify {
 namespace {
 
-constexpr double kGravity = 9.81, kLength = 24.0, kCourant = 0.45;
+using constants::kGravity;
+constexpr double kRadialLength = 24.0, kCourant = 0.45;
 constexpr double kDry = 1e-12;  ///< shallower water does not move [m]
-constexpr Index kCells = 3000;
+constexpr Index kRadialCells = 3000;
 
 double minmod(double a, double b) { return a * b <= 0.0 ? 0.0 : std::abs(a) < std::abs(b) ? a : b; }
 
@@ -46,7 +49,7 @@ double distance(const LineWater& coarse, const LineWater& fine) {
 }
 
 LineWater solved(double outer, Index cells) {
-    LineWater water(LineWater::Symmetry::axis, kLength, cells, [&](double r) { return column(r, outer); });
+    LineWater water(LineWater::Symmetry::axis, kRadialLength, cells, [&](double r) { return column(r, outer); });
     water.advance(RadialDam::kEnd);
     return water;
 }
@@ -159,7 +162,7 @@ void LineWater::advance(double time) {
     }
 }
 
-RadialDam::RadialDam(double outer) : water_(solved(outer, kCells)), outer_(outer) {}
+RadialDam::RadialDam(double outer) : water_(solved(outer, kRadialCells)), outer_(outer) {}
 
 double RadialDam::contour(double level) const {
     Index i = water_.cells() - 1;
@@ -170,9 +173,9 @@ double RadialDam::contour(double level) const {
 }
 
 std::vector<Residual> RadialDam::residuals() const {
-    const LineWater half = solved(outer_, kCells / 2), quarter = solved(outer_, kCells / 4);
+    const LineWater half = solved(outer_, kRadialCells / 2), quarter = solved(outer_, kRadialCells / 4);
     const double own = distance(half, water_), before = distance(quarter, half);
-    const double inside = 0.5 * kRadius * kRadius, all = 0.5 * kLength * kLength;
+    const double inside = 0.5 * kRadius * kRadius, all = 0.5 * kRadialLength * kRadialLength;
     const double start = kDepth * inside + outer_ * (all - inside);
     const double cap = cap_error(800);
     constexpr double order08 = 0.574;  // 2^-0.8: shocks and dry fronts halve an error with the cells, nearly

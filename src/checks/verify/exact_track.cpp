@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/ode.h"
 
 namespace frana::verify {
 namespace {
 
-constexpr double kGravity = 9.81;  ///< [m/s^2]
+using constants::kGravity;
 
 struct Parabola final : Track {
     double steepest, length;

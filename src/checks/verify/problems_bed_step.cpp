@@ -4,29 +4,32 @@
 #include <array>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/library.h"
 #include "checks/verify/trial.h"
 
 namespace frana::verify {
 namespace {
 
-constexpr double kSpeed = 12.0, kDepth = 0.5;     ///< of the stream [m/s], [m]
-constexpr double kFoot = 220.0, kLength = 300.0;  ///< of the bank; of the track [m]
-constexpr double kFirst = 10.0, kLast = 210.0;    ///< ends of the stream at the start [m]
-constexpr double kRise = 3.0, kEnd = 10.0;        ///< [m], [s]
-constexpr double kGravity = 9.81;
+constexpr double kStepSpeed = 12.0, kStepDepth = 0.5;  ///< of the stream [m/s], [m]
+constexpr double kFoot = 220.0, kStepLength = 300.0;   ///< of the bank; of the track [m]
+constexpr double kStepFirst = 10.0, kLast = 210.0;     ///< ends of the stream at the start [m]
+constexpr double kStepRise = 3.0, kStepEnd = 10.0;     ///< [m], [s]
+using constants::kGravity;
 
 /// What Bernoulli's equation says about the stream on top, [m/s]: the faster root of u^2/2 + g q/u = head.
 double speed_on_top() {
-    const double head = 0.5 * kSpeed * kSpeed + kGravity * (kDepth - kRise), flux = kSpeed * kDepth;
-    double u = kSpeed;
+    const double head = 0.5 * kStepSpeed * kStepSpeed + kGravity * (kStepDepth - kStepRise),
+                 flux = kStepSpeed * kStepDepth;
+    double u = kStepSpeed;
     for (int n = 0; n < 100; ++n) u = std::sqrt(2.0 * (head - kGravity * flux / u));
     return u;
 }
 
 std::vector<Residual> residuals() {
-    const double u = speed_on_top(), h = kSpeed * kDepth / u;
-    return {{"head kept", 0.5 * (u * u - kSpeed * kSpeed) + kGravity * (h + kRise - kDepth), 1e-12 * kSpeed * kSpeed},
+    const double u = speed_on_top(), h = kStepSpeed * kStepDepth / u;
+    return {{"head kept", 0.5 * (u * u - kStepSpeed * kStepSpeed) + kGravity * (h + kStepRise - kStepDepth),
+             1e-12 * kStepSpeed * kStepSpeed},
             {"faster than waves: gravity times depth over speed squared, below 1", kGravity * h / (u * u), 1.0}};
 }
 
@@ -46,25 +49,26 @@ OnTop errors(const Frame& frame, double top) {
             mean.speed += v[3 * k], mean.depth += h[k], nodes += 1.0;
         }
     const double u = speed_on_top();
-    return {mean.speed / nodes / u - 1.0, mean.depth / nodes / (kSpeed * kDepth / u) - 1.0};
+    return {mean.speed / nodes / u - 1.0, mean.depth / nodes / (kStepSpeed * kStepDepth / u) - 1.0};
 }
 
 /// Cells are counted along 100 m.
 Measurement run_bed_steps(const Setup& setup) {
     const double cell = 100.0 / static_cast<double>(setup.cells);
-    const Index length = static_cast<Index>(std::lround(kLength / cell));
+    const Index length = static_cast<Index>(std::lround(kStepLength / cell));
     Measurement m;
     const std::array<std::pair<const char*, double>, 3> bed_steps{
         {{"steep", 2.0}, {"bank_4m", 4.0}, {"bank_16m", 16.0}}};
     for (const auto& [name, width] : bed_steps) {
         const double wide = width;
-        Scene scene = scene_on(length + 1, 9, cell,
-                               [wide](double x, double) { return kRise * std::clamp((x - kFoot) / wide, 0.0, 1.0); });
+        Scene scene = scene_on(length + 1, 9, cell, [wide](double x, double) {
+            return kStepRise * std::clamp((x - kFoot) / wide, 0.0, 1.0);
+        });
         scene.sides = Sides::wall;
-        fill(scene, [](double x, double) { return x > kFirst && x < kLast ? kDepth : 0.0; }, {setup.per_side});
-        scene.particles.vx.assign(scene.particles.vx.size(), kSpeed);
+        fill(scene, [](double x, double) { return x > kStepFirst && x < kLast ? kStepDepth : 0.0; }, {setup.per_side});
+        scene.particles.vx.assign(scene.particles.vx.size(), kStepSpeed);
         Trial trial(std::move(scene), setup);
-        trial.run_to(kEnd);
+        trial.run_to(kStepEnd);
         const OnTop error = errors(trial.simulation().frame(), kFoot + wide);
         if (m.steps == 0) m = trial.measure();
         m.add(std::string(name) + "_speed", error.speed);

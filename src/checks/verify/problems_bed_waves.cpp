@@ -10,14 +10,14 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kWavelength = 8.0;  ///< on the map, eight times the depth [m]
-constexpr double kEnd = 3.0;         ///< [s]
-constexpr double kBehind = 14.0;     ///< room for the rear end, which spreads [m]
-constexpr double kFrom = 32.0;       ///< begin of the window, ahead of what comes in from the rear end of the slab [m]
+constexpr double kWavelength = 8.0;    ///< on the map, eight times the depth [m]
+constexpr double kWavesEnd = 3.0;      ///< [s]
+constexpr double kWavesBehind = 14.0;  ///< room for the rear end, which spreads [m]
+constexpr double kWavesFrom = 32.0;  ///< begin of the window, ahead of what comes in from the rear end of the slab [m]
 constexpr int kWaves = 3;            ///< in the window
-constexpr double kLength = kFrom + kWaves * kWavelength + 14.0;  ///< of the slab on the map [m]
-constexpr double kSmall = 3e-5;                                  ///< height of the wave over the depth [1]
-constexpr double kRough = 3e-6;                                  ///< of the nodes' bed beside it, over the depth [1]
+constexpr double kWavesLength = kWavesFrom + kWaves * kWavelength + 14.0;  ///< of the slab on the map [m]
+constexpr double kSmall = 3e-5;                                            ///< height of the wave over the depth [1]
+constexpr double kRough = 3e-6;  ///< of the nodes' bed beside it, over the depth [1]
 constexpr double kSpare = 2e-3;  ///< share of the stress above the threshold: small waves never bring it to zero
 
 /// A slab at its normal speed on a strip that falls along x, with the fastest wave of theory, and a bed that is rough from
@@ -29,17 +29,17 @@ Scene slab(const ErodingSheet& sheet, double cell, int per_side) {
         return kSmall * (amplitude * std::polar(1.0, 2.0 * M_PI * x / kWavelength)).real();
     };
     std::mt19937 random(20261125);  // the same numbers everywhere
-    std::vector<double> rough(static_cast<std::size_t>(std::lround((kBehind + kLength + ahead) / cell)) + 1);
+    std::vector<double> rough(static_cast<std::size_t>(std::lround((kWavesBehind + kWavesLength + ahead) / cell)) + 1);
     for (double& height : rough)
         height = kRough * sheet.thickness * (static_cast<double>(random()) / 4294967296.0 - 0.5);
     const auto bed = [&](double x, double) {
-        const double height = at(wave.bed, x) + rough[static_cast<std::size_t>(std::lround((x + kBehind) / cell))];
+        const double height = at(wave.bed, x) + rough[static_cast<std::size_t>(std::lround((x + kWavesBehind) / cell))];
         return -sheet.gradient * x + height / cosine;
     };
     const auto depth = [&](double x, double) {
-        return x > 0.0 && x < kLength ? (sheet.thickness + at(wave.depth, x)) / cosine : 0.0;
+        return x > 0.0 && x < kWavesLength ? (sheet.thickness + at(wave.depth, x)) / cosine : 0.0;
     };
-    Scene scene = scene_on(static_cast<Index>(rough.size()), 5, cell, bed, -kBehind);
+    Scene scene = scene_on(static_cast<Index>(rough.size()), 5, cell, bed, -kWavesBehind);
     scene.sides = Sides::wall;
     scene.curvature = Curvature::none;  // theory has none
     scene.density = sheet.density;
@@ -58,7 +58,7 @@ Scene slab(const ErodingSheet& sheet, double cell, int per_side) {
 
 /// The bed's height over the plane in the middle row of the window [m].
 std::vector<double> bed_in_window(const Frame& frame, double gradient) {
-    const Index first = std::lround((kFrom - frame.grid.x0) / frame.grid.cell),
+    const Index first = std::lround((kWavesFrom - frame.grid.x0) / frame.grid.cell),
                 count = std::lround(kWaves * kWavelength / frame.grid.cell);
     const double* z = frame.node("elevation")->data + frame.grid.ny / 2 * frame.grid.nx;
     std::vector<double> heights;
@@ -93,7 +93,7 @@ std::vector<double> amplitudes_by_length(std::vector<double> heights) {
 /// Adds by how much the wave of eight depths grows otherwise than theory has it, and the rates of short waves.
 void add_waves(const ErodingSheet& sheet, const std::string& name, const Setup& setup, Measurement& m) {
     Trial trial(slab(sheet, kWavelength / static_cast<double>(setup.cells), setup.per_side), setup);
-    std::vector<double> wave, time = {0.25 * kEnd, 0.5 * kEnd, kEnd};
+    std::vector<double> wave, time = {0.25 * kWavesEnd, 0.5 * kWavesEnd, kWavesEnd};
     std::vector<std::vector<double>> bands;
     for (const double t : time) {
         trial.run_to(t);

@@ -9,7 +9,7 @@
 namespace frana::verify {
 namespace {
 
-using constants::kDegree;
+using constants::kDegree, constants::kGravity;
 
 /// An elastic bar without sideways strain (nu = 0): waves run with sqrt(E / rho).
 struct Bar {
@@ -180,7 +180,7 @@ struct Slide3 {
 };
 
 Slide3 slide(const Setup& setup, double mu) {
-    constexpr double kSlope = 30.0, kGravity = 9.81, kEnd = 0.5, kStart = 1.0;
+    constexpr double kSlope = 30.0, kEnd = 0.5, kStart = 1.0;
     const double cell = 1.0 / static_cast<double>(setup.cells), side = 4.0 * cell;
     const Frame3 frame = turned_about_y(kSlope);
     const Vec3 along = frame.at({1, 0, 0}), across = frame.at({0, 0, 1});

@@ -10,34 +10,34 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kGravity = 10.0, kDensity = 1000.0, kDepth = 1.0;  // [m/s^2], [kg/m^3], [m]
-constexpr double kWidthCells = 3.0;                                 // of a slice
-constexpr double kFrom = 0.3;  // of the record [s]: before, the first contact rings with the speed of sound
+constexpr double kBoreGravity = 10.0, kBoreDensity = 1000.0, kBoreDepth = 1.0;  // [m/s^2], [kg/m^3], [m]
+constexpr double kBoreWidthCells = 3.0;                                         // of a slice
+constexpr double kBoreFrom = 0.3;  // of the record [s]: before, the first contact rings with the speed of sound
 
 /// A stream of depth h_1 and speed u_1 = Fr sqrt(g h_1) against a wall, without friction: a bore of depth h_2
 /// moves away from the wall at U, and the wall carries g rho h_2^2 / 2. Jump of mass and momentum (Stoker 1957).
 struct Bore {
     double froude;
 
-    double wave() const { return std::sqrt(kGravity * kDepth); }
+    double wave() const { return std::sqrt(kBoreGravity * kBoreDepth); }
     double speed() const { return froude * wave(); }
     /// h_2, where u_1 = (h_2 - h_1) sqrt(g (h_1 + h_2) / (2 h_1 h_2)); the right side grows with h_2.
     double depth() const {
-        double low = kDepth, high = kDepth * (2.0 + 4.0 * froude);
+        double low = kBoreDepth, high = kBoreDepth * (2.0 + 4.0 * froude);
         for (int n = 0; n < 200; ++n) {
             const double h = 0.5 * (low + high);
-            const double u = (h - kDepth) * std::sqrt(kGravity * (kDepth + h) / (2.0 * kDepth * h));
+            const double u = (h - kBoreDepth) * std::sqrt(kBoreGravity * (kBoreDepth + h) / (2.0 * kBoreDepth * h));
             (u < speed() ? low : high) = h;
         }
         return 0.5 * (low + high);
     }
-    double retreat() const { return speed() * kDepth / (depth() - kDepth); }  ///< U [m/s]
+    double retreat() const { return speed() * kBoreDepth / (depth() - kBoreDepth); }  ///< U [m/s]
     /// Force of the bore on the wall over rho u_1^2 h_1.
-    double force() const { return 0.5 * kGravity * depth() * depth() / (speed() * speed() * kDepth); }
+    double force() const { return 0.5 * kBoreGravity * depth() * depth() / (speed() * speed() * kBoreDepth); }
     /// Of a stream whose end the wall does not feel before `end`: the end collapses, which runs ahead at u_1
     /// + sqrt(g h_1), meets the bore and goes on through it at sqrt(g h_2).
     double length(double end) const {
-        const double behind = std::sqrt(kGravity * depth());
+        const double behind = std::sqrt(kBoreGravity * depth());
         return end * (speed() + wave() + retreat()) / (1.0 + retreat() / behind);
     }
 };
@@ -45,16 +45,16 @@ struct Bore {
 /// The stream as points that all move with u_1 towards the wall at x = 0, under hydrostatic pressure. Rows
 /// across move alike, so that one in a cell is enough.
 SolidScene stream(const Bore& bore, double end, const Setup& setup) {
-    const double cell = kDepth / static_cast<double>(setup.cells), width = kWidthCells * cell;
+    const double cell = kBoreDepth / static_cast<double>(setup.cells), width = kBoreWidthCells * cell;
     const double sound_speed = 10.0 * std::max(bore.speed(), bore.wave());
-    const double bulk = kDensity * sound_speed * sound_speed, length = bore.length(end);
+    const double bulk = kBoreDensity * sound_speed * sound_speed, length = bore.length(end);
     // The end falls back at 2 sqrt(g h_1) through the stream; jets rise as high as their speed carries them,
     // and splash.
     const double room = length + std::max(0.0, 2.0 * bore.wave() - bore.speed()) * end;
-    const double top = 3.0 * (kDepth + 0.5 * bore.speed() * bore.speed() / kGravity);
+    const double top = 3.0 * (kBoreDepth + 0.5 * bore.speed() * bore.speed() / kBoreGravity);
     SolidScene s;
-    s.gravity = {0, 0, -kGravity};
-    s.density = kDensity;
+    s.gravity = {0, 0, -kBoreGravity};
+    s.density = kBoreDensity;
     s.law = solid::Fluid{bulk, 0.0};
     s.grid = grid_around({}, {0, 0, 0}, {room, width, top}, cell);
     s.surfaces = {Surface::plane({0, 0, 0}, {1, 0, 0}), Surface::plane({0, 0, 0}, {0, 0, 1})};
@@ -65,29 +65,29 @@ SolidScene stream(const Bore& bore, double end, const Setup& setup) {
             for (const double across : {0.5, 1.5, 2.5}) {
                 const double x = (static_cast<double>(i) + 0.5) * spacing;
                 const double z = (static_cast<double>(k) + 0.5) * spacing;
-                const double p = kDensity * kGravity * (kDepth - z);
-                s.points.add({x, across * cell, z}, {-bore.speed(), 0, 0}, kDensity * part / (1.0 - p / bulk), p);
+                const double p = kBoreDensity * kBoreGravity * (kBoreDepth - z);
+                s.points.add({x, across * cell, z}, {-bore.speed(), 0, 0}, kBoreDensity * part / (1.0 - p / bulk), p);
             }
     return s;
 }
 
-/// The wall's mean force from kFrom to `end` over that of the bore, less one.
+/// The wall's mean force from kBoreFrom to `end` over that of the bore, less one.
 struct Thrust {
     double error;
     double left;  ///< out of the grid [m2]
     Measurement run;
 };
 Thrust thrust_of(const Bore& bore, double end, const Setup& setup) {
-    const double width = kWidthCells * kDepth / static_cast<double>(setup.cells);
+    const double width = kBoreWidthCells * kBoreDepth / static_cast<double>(setup.cells);
     Mpm3d flow(stream(bore, end, setup));
     double since = 0.0, before = 0.0;
     Thrust result;
     result.run = run_body(flow, end, [&](const Mpm3d& now) {
-        if (now.status().time <= kFrom) since = now.status().time, before = now.body().impulse[0].x();
+        if (now.status().time <= kBoreFrom) since = now.status().time, before = now.body().impulse[0].x();
     });
     const double force = (flow.body().impulse[0].x() - before) / (end - since) / width;
-    result.error = force / (kDensity * bore.speed() * bore.speed() * kDepth) / bore.force() - 1.0;
-    result.left = flow.status().mass_left / kDensity / width;
+    result.error = force / (kBoreDensity * bore.speed() * bore.speed() * kBoreDepth) / bore.force() - 1.0;
+    result.left = flow.status().mass_left / kBoreDensity / width;
     return result;
 }
 
@@ -114,10 +114,11 @@ std::vector<Residual> bore_residuals() {
     for (const auto& [froude, listed] : {std::pair{1.0, 2.35464}, {2.0, 1.52597}, {3.0, 1.31436}, {5.0, 1.17038}}) {
         const Bore bore{froude};
         const double in = bore.speed() + bore.retreat(), out = bore.retreat(), h = bore.depth();
-        const double thrust_in = kDepth * in * in + 0.5 * kGravity * kDepth * kDepth;
-        list.push_back({fmt::format("mass through a bore at Fr = {}", froude), h * out / (kDepth * in) - 1.0, 1e-12});
+        const double thrust_in = kBoreDepth * in * in + 0.5 * kBoreGravity * kBoreDepth * kBoreDepth;
+        list.push_back(
+            {fmt::format("mass through a bore at Fr = {}", froude), h * out / (kBoreDepth * in) - 1.0, 1e-12});
         list.push_back({fmt::format("momentum through a bore at Fr = {}", froude),
-                        (h * out * out + 0.5 * kGravity * h * h) / thrust_in - 1.0, 1e-12});
+                        (h * out * out + 0.5 * kBoreGravity * h * h) / thrust_in - 1.0, 1e-12});
         list.push_back({fmt::format("listed force at Fr = {}", froude), bore.force() / listed - 1.0, 5e-6});
     }
     return list;

@@ -10,12 +10,12 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kLength = 4.0;
+constexpr double kBowlSide = 4.0;
 constexpr Index kStripNodes = 7;  ///< across a one-dimensional problem, between walls
 
 Scene scene_of(const Bowl& bowl, const Setup& setup) {
-    const bool strip = bowl.width < kLength;
-    const double cell = kLength / static_cast<double>(setup.cells);
+    const bool strip = bowl.width < kBowlSide;
+    const double cell = kBowlSide / static_cast<double>(setup.cells);
     Scene scene = scene_on(setup.cells + 1, strip ? kStripNodes : setup.cells + 1, cell, bowl.bed);
     scene.terrain = TerrainModel::shallow;
     if (strip) scene.sides = Sides::wall;
@@ -64,7 +64,7 @@ Measurement swing(const Bowl& bowl, const Setup& setup, int periods) {
     }
     Measurement m = trial.measure(exact);
     const Frame frame = trial.simulation().frame();
-    const double width = bowl.width < kLength ? (kStripNodes - 1) * frame.grid.cell : kLength;
+    const double width = bowl.width < kBowlSide ? (kStripNodes - 1) * frame.grid.cell : kBowlSide;
     const double swing_energy = trial.scene().density * bowl.swing * width / bowl.width;
     m.add("energy_drift", (energy_of(frame.status) - start) / swing_energy);
     m.add("centre_error", trial.point_mean([](double x, double) { return x; }) - bowl.centre_x(end), "m");

@@ -11,7 +11,7 @@ namespace frana::verify {
 namespace {
 
 using constants::kDegree, constants::kGravity;
-constexpr double kWidthCells = 3.0;  // of a slice
+constexpr double kColumnWidthCells = 3.0;  // of a slice
 
 /// End of the deposit that holds together: the first gap of a cell.
 double tip(const Mpm3d& flow, double cell) {
@@ -25,7 +25,7 @@ double tip(const Mpm3d& flow, double cell) {
 
 /// Half of a column of sand, against a smooth wall in its middle: a floor and two smooth sides.
 SolidScene column(double height, double room, double cell) {
-    const double width = kWidthCells * cell;
+    const double width = kColumnWidthCells * cell;
     SolidScene s;
     s.gravity = {0, 0, -kGravity};
     s.grid = grid_around({}, {0, 0, 0}, {room, width, height}, cell);
@@ -55,7 +55,7 @@ struct Heap {
         s.flip = true;
         s.blending = std::sqrt(cell / kGravity);  // as stages have it (scene/scene_stages.cpp)
         s.law = solid::DruckerPrager::of(elastic, phi, 0.0, solid::Cone::plane_strain);
-        for_each_part({0, 0, 0}, {length, kWidthCells * cell, height}, cell, per_side,
+        for_each_part({0, 0, 0}, {length, kColumnWidthCells * cell, height}, cell, per_side,
                       [&](const Vec3& x, double volume) { s.points.add(x, Vec3::Zero(), density * volume); });
         return s;
     }
@@ -123,7 +123,7 @@ double surface(const Mpm3d& flow, double x, double cell) {
     double volume = 0.0;
     for (Index p = 0; p < flow.body().points.count(); ++p)
         if (flow.position(p).x() >= low && flow.position(p).x() < high) volume += flow.body().points.rest_volume[p];
-    return volume / (high - low) / (kWidthCells * cell);
+    return volume / (high - low) / (kColumnWidthCells * cell);
 }
 
 /// Aluminium bars 0.2 m long and 0.1 m high, Bui et al. (2008, Int. J. Numer. Anal. Meth. Geomech. 32, 1537):
@@ -151,7 +151,7 @@ double mean_depth(const Mpm3d& flow, double low, double high, double cell) {
     double volume = 0.0;
     for (Index p = 0; p < flow.body().points.count(); ++p)
         if (flow.position(p).x() >= low && flow.position(p).x() < high) volume += flow.body().points.rest_volume[p];
-    return volume / ((high - low) * kWidthCells * cell);
+    return volume / ((high - low) * kColumnWidthCells * cell);
 }
 
 /// Plane columns of grains that were simulated one by one (contact dynamics: Staron and Hinch 2005; Lagree, Staron and
@@ -206,7 +206,7 @@ struct Slump {
         : cell(1.0 / static_cast<double>(setup.cells)), flow(scene(cell, setup.per_side, viscosity)) {}
 
     static SolidScene scene(double cell, int per_side, double viscosity) {
-        const double width = kWidthCells * cell, sound_speed = 10.0 * std::sqrt(kGravity);
+        const double width = kColumnWidthCells * cell, sound_speed = 10.0 * std::sqrt(kGravity);
         SolidScene s;
         s.gravity = {0, 0, -kGravity};
         s.grid = grid_around({}, {0, 0, 0}, {2.0 * kMiddle, width, 1.0}, cell);
@@ -235,7 +235,7 @@ struct Slump {
         for (Index p = 0; p < flow.body().points.count(); ++p)
             if (std::abs(std::abs(flow.position(p).x() - kMiddle) - way) < cell)
                 volume += flow.body().points.rest_volume[p] * flow.body().points.j[p];
-        return volume / (4.0 * cell * kWidthCells * cell);
+        return volume / (4.0 * cell * kColumnWidthCells * cell);
     }
     double speed() const { return std::sqrt(2.0 * flow.status().kinetic / flow.status().mass); }
 };
@@ -255,7 +255,7 @@ Measurement run_slump(const Setup& setup) {
     m.add("length_error", front / exact - 1.0);
     m.add("creep", front - before, "m");
     m.add("speed", slump.speed(), "m/s");
-    m.add("volume_error", slump.flow.status().volume / (2.0 * Slump::kFirst * kWidthCells * slump.cell) - 1.0);
+    m.add("volume_error", slump.flow.status().volume / (2.0 * Slump::kFirst * kColumnWidthCells * slump.cell) - 1.0);
     return m;
 }
 

@@ -11,8 +11,8 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kSide = 5.0, kSpeed = 2.001, kDensity = 1000.0;  // the paper names no density
-constexpr double kSpacings[] = {0.01, 0.00001};                   // the largest and the smallest h_z of the paper [m]
+constexpr double kSide = 5.0, kSlabSpeed = 2.001, kSlabDensity = 1000.0;  // the paper names no density
+constexpr double kSpacings[] = {0.01, 0.00001};  // the largest and the smallest h_z of the paper [m]
 
 double depth_at(double x, double y) { return 10.0 - std::sin(2.0 * x) * std::cos(y); }
 
@@ -36,12 +36,12 @@ struct Field {
         const double x = width() * static_cast<double>(place), y = width() * static_cast<double>(row);
         const double even = volume_over(0.0, kSide, 0.0, kSide) / static_cast<double>(columns());
         const double volume = sharing == Sharing::even ? even : volume_over(x, x + width(), y, y + width());
-        const double mass = kDensity * volume;
-        return {depth_at(x + 0.5 * width(), y + 0.5 * width()), mass, volume, mass * kSpeed};
+        const double mass = kSlabDensity * volume;
+        return {depth_at(x + 0.5 * width(), y + 0.5 * width()), mass, volume, mass * kSlabSpeed};
     }
     ConversionErrors errors(double spacing) const {
-        const double mass = kDensity * volume_over(0.0, kSide, 0.0, kSide);
-        return conversion_errors(columns(), [this](Index p) { return column(p); }, spacing, {mass, mass * kSpeed});
+        const double mass = kSlabDensity * volume_over(0.0, kSide, 0.0, kSide);
+        return conversion_errors(columns(), [this](Index p) { return column(p); }, spacing, {mass, mass * kSlabSpeed});
     }
 };
 
@@ -60,7 +60,7 @@ Conservation keep(const Field& field) {
         c.volume.push_back(column.volume);
     }
     c.id = c.bed_pressure = c.slope_x = c.slope_y = c.bed = c.vy = std::vector<double>(c.count(), 0.0);
-    c.vx.assign(c.count(), kSpeed);
+    c.vx.assign(c.count(), kSlabSpeed);
     const ConversionChoice choice{1.0, Layers::centres, Vertical::zero, VelocityProfile::parabolic};
     return conservation_of(c, columns_to_points(c, choice), choice);
 }

@@ -9,10 +9,10 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kLength = 100.0, kDam = 50.0, kEnd = 6.0;
+constexpr double kDamLength = 100.0, kDamAt = 50.0, kDamEnd = 6.0;
 
 Scene channel(Index cells, const Function& depth, const Setup& setup) {
-    Scene scene = scene_on(cells + 1, 7, kLength / static_cast<double>(cells), [](double, double) { return 0.0; });
+    Scene scene = scene_on(cells + 1, 7, kDamLength / static_cast<double>(cells), [](double, double) { return 0.0; });
     scene.sides = Sides::wall;
     fill(scene, depth, {setup.per_side});
     return scene;
@@ -37,36 +37,36 @@ double last_contour(const Frame& frame, double level) {
 
 template <class Wave>
 Exact exact_of(const Wave& wave) {
-    return {[wave](double x, double) { return wave.at((x - kDam) / kEnd).depth; },
-            [wave](double x, double) { return wave.at((x - kDam) / kEnd).velocity; }};
+    return {[wave](double x, double) { return wave.at((x - kDamAt) / kDamEnd).depth; },
+            [wave](double x, double) { return wave.at((x - kDamAt) / kDamEnd).velocity; }};
 }
 
 Measurement run_ritter(const Setup& setup) {
     const Ritter wave{1.0};
     Trial trial(channel(
-                    setup.cells, [](double x, double) { return x < kDam ? 1.0 : 0.0; }, setup),
+                    setup.cells, [](double x, double) { return x < kDamAt ? 1.0 : 0.0; }, setup),
                 setup);
-    trial.run_to(kEnd);
+    trial.run_to(kDamEnd);
     Measurement m = trial.measure(exact_of(wave));
     // The tip is infinitely thin: the contour of a hundredth of hl stands where (2 c - s)^2 = 0.09 g hl.
     const double s = (2.0 - 0.3) * std::sqrt(wave.g);
-    m.front_error = last_contour(trial.simulation().frame(), 0.01) - (kDam + kEnd * s);
+    m.front_error = last_contour(trial.simulation().frame(), 0.01) - (kDamAt + kDamEnd * s);
     m.add("total_variation", total_variation(trial.simulation().frame()), "m");
     return m;
 }
 
 Measurement run_stoker(const Setup& setup, double hl, double hr, double end_scale) {
     const Stoker wave(hl, hr);
-    const double end = kEnd * end_scale;
+    const double end = kDamEnd * end_scale;
     Trial trial(channel(
-                    setup.cells, [&](double x, double) { return x < kDam ? hl : hr; }, setup),
+                    setup.cells, [&](double x, double) { return x < kDamAt ? hl : hr; }, setup),
                 setup);
     trial.run_to(end);
-    const auto state = [&](double x) { return wave.at((x - kDam) / end); };
+    const auto state = [&](double x) { return wave.at((x - kDamAt) / end); };
     Measurement m = trial.measure(
         {[&](double x, double) { return state(x).depth; }, [&](double x, double) { return state(x).velocity; }});
     const Frame frame = trial.simulation().frame();
-    m.front_error = last_contour(frame, 0.5 * (wave.hm + wave.hr)) - (kDam + end * wave.shock);
+    m.front_error = last_contour(frame, 0.5 * (wave.hm + wave.hr)) - (kDamAt + end * wave.shock);
     m.add("total_variation", total_variation(frame), "m");
     return m;
 }

@@ -13,23 +13,25 @@ namespace frana::verify {
 namespace {
 
 using constants::kDegree;
-constexpr double kLength = 0.20, kHeight = 0.14;  ///< of the column, along the slope and normal to it [m]
-constexpr double kLayer = 0.005;                  ///< of loose grains on all of the slope [m]
-constexpr double kRepose = 26.0;                  ///< friction angle of flow and bed [degrees]
-constexpr double kGrain = 0.0007;                 ///< [m]
-constexpr double kLatest = 5.0;                   ///< when fronts have stopped; thin tails creep on [s]
+constexpr double kCollapseLength = 0.20,
+                 kCollapseHeight = 0.14;  ///< of the column, along the slope and normal to it [m]
+constexpr double kLayer = 0.005;          ///< of loose grains on all of the slope [m]
+constexpr double kRepose = 26.0;          ///< friction angle of flow and bed [degrees]
+constexpr double kGrain = 0.0007;         ///< [m]
+constexpr double kLatest = 5.0;           ///< when fronts have stopped; thin tails creep on [s]
 
 /// The column behind its gate at the upper end of a strip between walls. Without a law the slope is rock.
 Scene column(double slope_deg, const Setup& setup, const ErosionLaw* law, double kappa) {
     const double slope = slope_deg * kDegree, cosine = std::cos(slope),
-                 cell = kLength / static_cast<double>(setup.cells);
-    const double room = 0.5 + 4.0 * kHeight / (std::tan(kRepose * kDegree) - std::tan(slope));
-    Scene scene = scene_on(static_cast<Index>(std::ceil((kLength + room) / cell)) + 1, 5, cell,
+                 cell = kCollapseLength / static_cast<double>(setup.cells);
+    const double room = 0.5 + 4.0 * kCollapseHeight / (std::tan(kRepose * kDegree) - std::tan(slope));
+    Scene scene = scene_on(static_cast<Index>(std::ceil((kCollapseLength + room) / cell)) + 1, 5, cell,
                            [&](double x, double) { return -std::tan(slope) * x; });
     scene.sides = Sides::wall;
     scene.density = 1500.0;
     scene.bed_law = bed::Coulomb{std::tan(kRepose * kDegree)};
-    fill_cut(scene, [&](double x, double) { return x < kLength * cosine ? kHeight / cosine : 0.0; }, {setup.per_side});
+    fill_cut(scene, [&](double x, double) { return x < kCollapseLength * cosine ? kCollapseHeight / cosine : 0.0; },
+             {setup.per_side});
     if (!law) return scene;
     ErodibleBed bed;
     bed.depth = Raster::filled(scene.bed.geometry, kLayer / cosine);
@@ -53,7 +55,7 @@ double runout(double slope_deg, const Setup& setup, Measurement& m, const Erosio
     const Measurement one = trial.measure();
     m.particles = std::max(m.particles, one.particles), m.steps += one.steps, m.wall_seconds += one.wall_seconds;
     m.mass_error = std::max(std::isnan(m.mass_error) ? 0.0 : m.mass_error, one.mass_error);
-    return front / cosine - kLength;
+    return front / cosine - kCollapseLength;
 }
 
 Measurement run_collapse(const Setup& setup) {

@@ -10,16 +10,16 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kSlope = 0.2;  ///< tangent
-constexpr double kDensity = 1800.0;
-const double kCosine = 1.0 / std::sqrt(1.0 + kSlope * kSlope);
+constexpr double kInflowSlope = 0.2;  ///< tangent
+constexpr double kInflowDensity = 1800.0;
+const double kCosine = 1.0 / std::sqrt(1.0 + kInflowSlope * kInflowSlope);
 
 /// Uniform flow of a discharge per width on the slope, as the map has it.
 struct Uniform {
     double depth, speed;  ///< vertical [m]; along the map [m/s]
 };
 Uniform uniform(const BedLaw& law, double discharge) {
-    const bed::NormalFlow flow = bed::normal_flow(law, discharge, {kSlope, 9.81, kDensity});
+    const bed::NormalFlow flow = bed::normal_flow(law, discharge, {kInflowSlope, 9.81, kInflowDensity});
     return {flow.thickness / kCosine, flow.speed * kCosine};
 }
 
@@ -29,10 +29,11 @@ struct Channel {
     double width() const { return 6.0 * cell; }
     Scene scene(const BedLaw& law) const {
         const Index nx = static_cast<Index>(std::lround(length / cell)) + 1;
-        Scene scene = scene_on(
-            nx, 7, cell, [this](double x, double) { return x > length - 3.5 * cell ? Raster::nodata : -kSlope * x; });
+        Scene scene = scene_on(nx, 7, cell, [this](double x, double) {
+            return x > length - 3.5 * cell ? Raster::nodata : -kInflowSlope * x;
+        });
         scene.sides = Sides::wall;
-        scene.density = kDensity;
+        scene.density = kInflowDensity;
         scene.bed_law = law;
         return scene;
     }
@@ -42,7 +43,7 @@ struct Channel {
         Inflow inflow;
         inflow.name = "upstream";
         inflow.line = {{line, 0.0}, {line, width()}};
-        inflow.slope = kSlope;
+        inflow.slope = kInflowSlope;
         inflow.spacing = cell / per_side;
         const auto add = [&](double t, double q) {
             inflow.time.push_back(t), inflow.discharge.push_back(q * width());
@@ -148,12 +149,12 @@ Measurement run_normal(const Setup& setup) {
 
 /// The closed forms that the search for uniform flow must meet.
 std::vector<Residual> normal_residuals() {
-    const double s = kSlope * kCosine, q = 4.0;
-    const auto flow = [&](const BedLaw& law) { return bed::normal_flow(law, q, {kSlope, 9.81, kDensity}); };
+    const double s = kInflowSlope * kCosine, q = 4.0;
+    const auto flow = [&](const BedLaw& law) { return bed::normal_flow(law, q, {kInflowSlope, 9.81, kInflowDensity}); };
     const double voellmy = std::cbrt(q * q / (400.0 * (s - 0.08 * kCosine)));
     const double manning = std::pow(0.05 * q / std::sqrt(s), 0.6);
-    const double h = flow(bed::Bingham{200.0, 400.0, 0.0}).thickness, sheared = h - 400.0 / (kDensity * 9.81 * s);
-    const double bingham = kDensity * 9.81 * s * sheared * sheared * (3.0 * h - sheared) / (6.0 * 200.0);
+    const double h = flow(bed::Bingham{200.0, 400.0, 0.0}).thickness, sheared = h - 400.0 / (kInflowDensity * 9.81 * s);
+    const double bingham = kInflowDensity * 9.81 * s * sheared * sheared * (3.0 * h - sheared) / (6.0 * 200.0);
     return {{"Voellmy: h = (q^2 / (xi (sin - mu cos)))^(1/3)",
              std::abs(flow(bed::Voellmy{0.08, 400.0}).thickness / voellmy - 1.0), 1e-12},
             {"Manning: h = (n q / sqrt(sin))^(3/5)", std::abs(flow(bed::Manning{0.05, 0.0}).thickness / manning - 1.0),

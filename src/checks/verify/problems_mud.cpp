@@ -8,7 +8,7 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kMiddle = 1.0;  ///< half of what is looked at [m]
+constexpr double kMudMiddle = 1.0;  ///< half of what is looked at [m]
 
 /// A sheet 1 m thick of water's density on a floor that holds it, 45 degrees steep, from rest.
 struct Sheet {
@@ -54,7 +54,7 @@ double viscous_error(const Setup& setup, double floor, Measurement& m) {
     double off = 0.0, all = 0.0;
     for (Index p = 0; p < flow.body().points.count(); ++p) {
         const Vec3 x = flow.position(p);
-        if (std::abs(x.x() - 0.5 * sheet.length) > kMiddle) continue;
+        if (std::abs(x.x() - 0.5 * sheet.length) > kMudMiddle) continue;
         const double exact = viscous_speed(x.z() - floor * cell);
         off += std::abs(flow.velocity(p).x() - exact), all += exact;
     }
@@ -113,7 +113,7 @@ Measurement run_mud_sheet(const Setup& setup) {
     Index in_plug = 0;
     for (Index p = 0; p < flow.body().points.count(); ++p) {
         const Vec3 x = flow.position(p);
-        if (std::abs(x.x() - middle) > kMiddle) continue;
+        if (std::abs(x.x() - middle) > kMudMiddle) continue;
         const double found = flow.velocity(p).x(), exact = mud.speed(x.z());
         off += std::abs(found - exact), all += exact;
         highest = std::max(highest, x.z());

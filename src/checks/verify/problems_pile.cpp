@@ -10,7 +10,7 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kLength = 60.0, kMiddle = 30.0, kHeight = 4.0, kEnd = 10.0;
+constexpr double kPileLength = 60.0, kPileMiddle = 30.0, kPileHeight = 4.0, kPileEnd = 10.0;
 
 /// On a plane, fall line turned against the grid; a cone, or a paraboloid as steep at its rim.
 struct Pile {
@@ -19,11 +19,11 @@ struct Pile {
     bool cone;
 
     double bed(double x, double y) const {
-        return 100 - slope * (std::cos(turn) * (x - kMiddle) + std::sin(turn) * (y - kMiddle));
+        return 100 - slope * (std::cos(turn) * (x - kPileMiddle) + std::sin(turn) * (y - kPileMiddle));
     }
     double depth(double x, double y) const {
-        const double r = std::hypot(x - kMiddle, y - kMiddle) * flank / kHeight;  // 1 at the rim
-        return kHeight * (cone ? 1 - r : 0.5 * (1 - r * r));
+        const double r = std::hypot(x - kPileMiddle, y - kPileMiddle) * flank / kPileHeight;  // 1 at the rim
+        return kPileHeight * (cone ? 1 - r : 0.5 * (1 - r * r));
     }
 };
 
@@ -69,7 +69,7 @@ double displacement(const Columns& before, const Columns& now) {
 Measurement run_piles(const Setup& setup) {
     Measurement m;
     double moved = 0.0, speed = 0.0;
-    const double cell = kLength / static_cast<double>(setup.cells);
+    const double cell = kPileLength / static_cast<double>(setup.cells);
     for (const TerrainModel terrain : {TerrainModel::steep, TerrainModel::shallow})
         for (const Pile& pile : piles()) {
             const auto bed = [&](double x, double y) { return pile.bed(x, y); };
@@ -79,7 +79,7 @@ Measurement run_piles(const Setup& setup) {
             fill(scene, [&](double x, double y) { return pile.depth(x, y); }, {setup.per_side});
             Trial trial(std::move(scene), setup);
             const Columns before = trial.simulation().flow().columns;
-            trial.run_to(kEnd, [&](const Status& now) { speed = std::max(speed, now.max_speed_on_map); });
+            trial.run_to(kPileEnd, [&](const Status& now) { speed = std::max(speed, now.max_speed_on_map); });
             moved = std::max(moved, cell * displacement(before, trial.simulation().flow().columns));
             const double wall = m.wall_seconds;
             m = trial.measure();

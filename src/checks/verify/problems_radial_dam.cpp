@@ -8,7 +8,7 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kReach = 24.0;  ///< of the square around the column; no wave gets there [m]
+constexpr double kRadialReach = 24.0;  ///< of the square around the column; no wave gets there [m]
 
 /// The reference, computed once.
 const RadialDam& reference(double outer) {
@@ -29,7 +29,8 @@ double mean_radius(const Frame& frame, double level) {
 /// A quarter of the square, cells counted along its whole side; the walls are the symmetry.
 Measurement run_dam(const Setup& setup, double outer, double level) {
     const Index half = setup.cells / 2;
-    Scene scene = scene_on(half + 1, half + 1, kReach / static_cast<double>(half), [](double, double) { return 0.0; });
+    Scene scene =
+        scene_on(half + 1, half + 1, kRadialReach / static_cast<double>(half), [](double, double) { return 0.0; });
     scene.sides = Sides::wall;
     const auto depth = [&](double x, double y) {
         return std::hypot(x, y) < RadialDam::kRadius ? RadialDam::kDepth : outer;

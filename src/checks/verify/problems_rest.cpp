@@ -11,20 +11,20 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kGravity = 10.0, kDensity = 1000.0, kDeepest = 1.0;  // [m/s^2], [kg/m^3], [m]
-constexpr double kSlope = 20.0 * M_PI / 180.0;
+constexpr double kRestGravity = 10.0, kRestDensity = 1000.0, kDeepest = 1.0;  // [m/s^2], [kg/m^3], [m]
+constexpr double kRestSlope = 20.0 * M_PI / 180.0;
 
 /// A wedge of water against a wall at x = 0, level at z = kDeepest over a bed of 20 degrees, as columns one
 /// cell wide, of which a 3D stage from the start makes points half of that apart.
 Scene wedge(const SolidLaw& law, double bed_friction, const Setup& setup) {
     constexpr Index kAcross = 4, kRoom = 4;  // nodes of the terrain
     const double cell = kDeepest / static_cast<double>(setup.cells);
-    const double length = kDeepest / std::tan(kSlope);
+    const double length = kDeepest / std::tan(kRestSlope);
     const Index along = static_cast<Index>(std::ceil(length / cell)) + kRoom;
-    Scene scene = scene_on(along, kAcross, cell, [](double x, double) { return x * std::tan(kSlope); });
-    scene.gravity = kGravity;
-    scene.density = kDensity;
-    fill(scene, [&](double x, double) { return kDeepest - x * std::tan(kSlope); }, {1});
+    Scene scene = scene_on(along, kAcross, cell, [](double x, double) { return x * std::tan(kRestSlope); });
+    scene.gravity = kRestGravity;
+    scene.density = kRestDensity;
+    fill(scene, [&](double x, double) { return kDeepest - x * std::tan(kRestSlope); }, {1});
     SolidStage stage;
     stage.window = {0, 0, along - 1, kAcross - 1};
     stage.closed = {true, true, false, true};
@@ -53,10 +53,10 @@ double rms_apart(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 double pressure_error(const Mpm3d& flow) {
     double sum = 0.0;
     for (Index p = 0; p < flow.body().points.count(); ++p) {
-        const double exact = kDensity * kGravity * std::max(0.0, kDeepest - flow.position(p).z());
+        const double exact = kRestDensity * kRestGravity * std::max(0.0, kDeepest - flow.position(p).z());
         sum += std::pow(-flow.stress(p).trace() / 3.0 - exact, 2);
     }
-    return std::sqrt(sum / static_cast<double>(flow.body().points.count())) / (kDensity * kGravity * kDeepest);
+    return std::sqrt(sum / static_cast<double>(flow.body().points.count())) / (kRestDensity * kRestGravity * kDeepest);
 }
 
 /// What bed and wall carry in some time: the bed the weight, the wall a triangle of pressure.
@@ -64,7 +64,8 @@ struct Forces {
     double bed_error, wall_error;
     Forces(const Mpm3d& flow, const std::vector<Vec3>& before, double since) {
         const SolidStatus& now = flow.status();
-        const double weight = now.mass * kGravity, pressure_force = weight * std::tan(kSlope), time = now.time - since;
+        const double weight = now.mass * kRestGravity, pressure_force = weight * std::tan(kRestSlope),
+                     time = now.time - since;
         bed_error = (flow.body().impulse[0].z() - before[0].z()) / time / weight - 1.0;
         wall_error = (flow.body().impulse[1].x() - before[1].x()) / time / pressure_force - 1.0;
     }

@@ -14,7 +14,7 @@ namespace {
 using constants::kDegree;
 
 /// A square of flow from rest, on a plane that falls towards `azimuth` from the x axis.
-struct Slab {
+struct UniformSlab {
     double length, slope, thickness, density;  ///< [m], [rad], normal to the bed [m], [kg/m^3]
     BedLaw law;
     double speed;  ///< exact mean speed along the bed [m/s]
@@ -26,7 +26,7 @@ struct SlabErrors {
     double depth = 0.0, speed = 0.0;
 };
 
-SlabErrors errors(const Frame& frame, const Slab& slab, double azimuth) {
+SlabErrors errors(const Frame& frame, const UniformSlab& slab, double azimuth) {
     const double *h = frame.node("depth")->data, *v = frame.node("velocity")->data;
     const double along = slab.speed * std::cos(slab.slope), middle = 0.5 * slab.length;
     const double exact[3] = {along * std::cos(azimuth), along * std::sin(azimuth), -slab.speed * std::sin(slab.slope)};
@@ -44,7 +44,7 @@ SlabErrors errors(const Frame& frame, const Slab& slab, double azimuth) {
     return worst;
 }
 
-Measurement run_slab(const Setup& setup, const Slab& slab) {
+Measurement run_slab(const Setup& setup, const UniformSlab& slab) {
     Measurement straight;
     double turned = 0.0;
     for (const double azimuth : {0.0, 27 * kDegree}) {
@@ -70,7 +70,7 @@ Measurement run_slab(const Setup& setup, const Slab& slab) {
     return straight;
 }
 
-Slab bingham_slab(const BinghamSheet& sheet, double length, double end) {
+UniformSlab bingham_slab(const BinghamSheet& sheet, double length, double end) {
     return {length,
             sheet.slope,
             sheet.thickness,
@@ -81,7 +81,7 @@ Slab bingham_slab(const BinghamSheet& sheet, double length, double end) {
 }
 
 Problem slab_problem(const char* name, const char* title, std::function<std::vector<Residual>()> residuals,
-                     const Slab& slab, const Gate& gate) {
+                     const UniformSlab& slab, const Gate& gate) {
     Problem problem{
         name, title, {60, 90, 120}, std::move(residuals), [slab](const Setup& setup) { return run_slab(setup, slab); }};
     problem.order_of = "speed_error";
@@ -98,7 +98,7 @@ std::vector<Problem> sheet_problems() {
     const BinghamSheet bingham{1500.0, 5000.0, 300.0, 15 * kDegree, 1.0};
     const BinghamSheet newton{1500.0, 5000.0, 0.0, 15 * kDegree, 1.0};
     const BagnoldSheet bagnold{{std::tan(21 * kDegree), std::tan(33 * kDegree), 0.3, 1e-3, 0.6}, 26 * kDegree, 0.02};
-    const Slab granular{80.0, bagnold.slope, bagnold.thickness, 1500.0, bagnold.law, bagnold.mean_speed(), 24.0};
+    const UniformSlab granular{80.0, bagnold.slope, bagnold.thickness, 1500.0, bagnold.law, bagnold.mean_speed(), 24.0};
     return {
         slab_problem("bingham_flow", "uniform Bingham flow down 15 deg, straight and turned 27 deg",
                      [bingham] { return bingham.residuals(); }, bingham_slab(bingham, 240.0, 5.0),

@@ -11,15 +11,15 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kSlope = 35 * M_PI / 180, kEnd = 5.0;
-constexpr double kReach = 240.0;  ///< the reference length: so many metres have Setup::cells cells
+constexpr double kSimilaritySlope = 35 * M_PI / 180, kSimilarityEnd = 5.0;
+constexpr double kSimilarityReach = 240.0;  ///< the reference length: so many metres have Setup::cells cells
 
 const SimilarityPile kPile(35, 25, 80, 4);
 
 /// Fields of the pile on the map when it slides in direction `turn` [rad]: X = x / cos, h = h_n / cos, u = U cos.
 Exact on_map(double turn, double t) {
     const SimilarityPile::Shape shape = kPile.shape(t);
-    const double c = std::cos(turn), s = std::sin(turn), cosine = std::cos(kSlope);
+    const double c = std::cos(turn), s = std::sin(turn), cosine = std::cos(kSimilaritySlope);
     const auto at = [=](double x, double y) { return kPile.at(shape, (c * x + s * y) / cosine, c * y - s * x); };
     return {[=](double x, double y) { return at(x, y).depth / cosine; },
             [=](double x, double y) { return c * cosine * at(x, y).u - s * at(x, y).v; },
@@ -28,8 +28,9 @@ Exact on_map(double turn, double t) {
 
 /// The same, sliding along x, by the steep equations themselves; a map of degree 5 is exact to 1e-5.
 Exact steep_on_map(double t) {
-    const double cosine = std::cos(kSlope);
-    const SteepPile::Plane plane{std::tan(kSlope), std::tan(25 * M_PI / 180), 4.0 / cosine, 80.0 * cosine, 80.0, 9.81};
+    const double cosine = std::cos(kSimilaritySlope);
+    const SteepPile::Plane plane{
+        std::tan(kSimilaritySlope), std::tan(25 * M_PI / 180), 4.0 / cosine, 80.0 * cosine, 80.0, 9.81};
     const auto pile = std::make_shared<const SteepPile>(plane, SteepPile::Form::steep, 5, t);
     return {[pile](double x, double y) { return pile->at(x, y).depth; },
             [pile](double x, double y) { return pile->at(x, y).u; },
@@ -38,24 +39,24 @@ Exact steep_on_map(double t) {
 
 /// The window holds the pile at the start and at the end, whatever the angle; the pile starts around (0, 0).
 Trial turned_trial(const Setup& setup, double turn, TerrainModel terrain) {
-    const double cell = kReach / static_cast<double>(setup.cells), c = std::cos(turn), s = std::sin(turn);
+    const double cell = kSimilarityReach / static_cast<double>(setup.cells), c = std::cos(turn), s = std::sin(turn);
     const double low = -std::ceil(96 / cell) * cell;
     const Index nx = static_cast<Index>(std::ceil((120 - low) / cell)) + 1;
-    const auto bed = [&](double x, double y) { return -std::tan(kSlope) * (c * x + s * y); };
+    const auto bed = [&](double x, double y) { return -std::tan(kSimilaritySlope) * (c * x + s * y); };
     Scene scene = scene_on(nx, nx, cell, bed, low, low);
     scene.terrain = terrain;
     scene.bed_law = bed::Coulomb{std::tan(25 * M_PI / 180)};
     fill_cut(scene, on_map(turn, 0.0).depth, {setup.per_side});
     Trial trial(std::move(scene), setup);
-    trial.run_to(kEnd);
+    trial.run_to(kSimilarityEnd);
     return trial;
 }
 
 Measurement measured(Trial& trial, double turn) {
-    Measurement m = trial.measure(on_map(turn, kEnd));
+    Measurement m = trial.measure(on_map(turn, kSimilarityEnd));
     const double c = std::cos(turn), s = std::sin(turn);
     const double along = trial.point_mean([&](double x, double y) { return c * x + s * y; });
-    m.add("centre_error", along - kPile.centre(kEnd) * std::cos(kSlope), "m");
+    m.add("centre_error", along - kPile.centre(kSimilarityEnd) * std::cos(kSimilaritySlope), "m");
     return m;
 }
 
@@ -72,7 +73,7 @@ Measurement run_similarity(const Setup& setup) {
     }
     m.add("rotation_spread", most - least);
     // Against its own equations: what is the scheme's own error.
-    const Measurement full = steep.measure(steep_on_map(kEnd));
+    const Measurement full = steep.measure(steep_on_map(kSimilarityEnd));
     m.add("full_l2_depth", full.l2_depth);
     m.add("full_l2_momentum", full.l2_momentum);
     // The theory's own linearisation in the depth gradient; that of its friction's direction stays.

@@ -28,7 +28,7 @@ double last_contour(const Frame& frame, Index start, Index step, double step_cel
     return found;
 }
 
-constexpr double kStart = 20.0, kEnd = 200.0;  ///< [s]
+constexpr double kSpreadingStart = 20.0, kSpreadingEnd = 200.0;  ///< [s]
 
 Measurement run_planar(const Setup& setup) {
     const PlanarSpreading sheet{0.2, 1.0};
@@ -36,17 +36,17 @@ Measurement run_planar(const Setup& setup) {
     const Index nx = static_cast<Index>(std::ceil(8.0 / cell)) + 1;
     Scene scene = scene_on(nx, 5, cell, [](double, double) { return 0.0; });
     set_viscosity(scene, sheet.nu);
-    fill_cut(scene, [&](double x, double) { return sheet.depth(x, kStart); }, {setup.per_side});
+    fill_cut(scene, [&](double x, double) { return sheet.depth(x, kSpreadingStart); }, {setup.per_side});
     Trial trial(std::move(scene), setup);
-    trial.run_to(kEnd - kStart);
-    Measurement m = trial.measure({[&](double x, double) { return sheet.depth(x, kEnd); },
-                                   [&](double x, double) { return sheet.speed(x, kEnd); }});
+    trial.run_to(kSpreadingEnd - kSpreadingStart);
+    Measurement m = trial.measure({[&](double x, double) { return sheet.depth(x, kSpreadingEnd); },
+                                   [&](double x, double) { return sheet.speed(x, kSpreadingEnd); }});
     const Frame frame = trial.simulation().frame();
-    const double level = 0.2 * sheet.depth(0.0, kEnd), exact = sheet.contour(level, kEnd);
+    const double level = 0.2 * sheet.depth(0.0, kSpreadingEnd), exact = sheet.contour(level, kSpreadingEnd);
     const Index row = frame.grid.ny / 2 * frame.grid.nx;
     m.front_error = last_contour(frame, row, 1, 1.0, level) * cell - exact;
     m.add("front_law", m.front_error / exact);
-    m.add("wall_depth_error", frame.node("depth")->data[row] / sheet.depth(0.0, kEnd) - 1);
+    m.add("wall_depth_error", frame.node("depth")->data[row] / sheet.depth(0.0, kSpreadingEnd) - 1);
     return m;
 }
 
@@ -56,25 +56,26 @@ Measurement run_round(const Setup& setup) {
     const Index n = static_cast<Index>(std::ceil(4.0 / cell)) + 1;
     Scene scene = scene_on(n, n, cell, [](double, double) { return 0.0; });
     set_viscosity(scene, sheet.nu);
-    fill_cut(scene, [&](double x, double y) { return sheet.depth(std::hypot(x, y), kStart); }, {setup.per_side});
+    fill_cut(scene, [&](double x, double y) { return sheet.depth(std::hypot(x, y), kSpreadingStart); },
+             {setup.per_side});
     Trial trial(std::move(scene), setup);
-    trial.run_to(kEnd - kStart);
+    trial.run_to(kSpreadingEnd - kSpreadingStart);
     const auto radial = [&](double x, double y) {
         const double r = std::hypot(x, y);
-        return r > 0.0 ? sheet.speed(r, kEnd) / r : 0.0;
+        return r > 0.0 ? sheet.speed(r, kSpreadingEnd) / r : 0.0;
     };
-    Measurement m = trial.measure({[&](double x, double y) { return sheet.depth(std::hypot(x, y), kEnd); },
+    Measurement m = trial.measure({[&](double x, double y) { return sheet.depth(std::hypot(x, y), kSpreadingEnd); },
                                    [&](double x, double y) { return radial(x, y) * x; },
                                    [&](double x, double y) { return radial(x, y) * y; }});
     const Frame frame = trial.simulation().frame();
-    const double level = 0.2 * sheet.depth(0.0, kEnd), exact = sheet.contour(level, kEnd);
+    const double level = 0.2 * sheet.depth(0.0, kSpreadingEnd), exact = sheet.contour(level, kSpreadingEnd);
     const double axis = last_contour(frame, 0, 1, 1.0, level) * cell - exact;
     const double diagonal = last_contour(frame, 0, frame.grid.nx + 1, std::sqrt(2.0), level) * cell - exact;
     m.front_error = std::abs(axis) > std::abs(diagonal) ? axis : diagonal;
     m.add("front_law", m.front_error / exact);
     m.add("front_axis", axis / cell, "cells");
     m.add("front_diagonal", diagonal / cell, "cells");
-    m.add("centre_depth_error", frame.node("depth")->data[0] / sheet.depth(0.0, kEnd) - 1);
+    m.add("centre_depth_error", frame.node("depth")->data[0] / sheet.depth(0.0, kSpreadingEnd) - 1);
     return m;
 }
 

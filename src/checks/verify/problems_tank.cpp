@@ -8,9 +8,9 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kGravity = 10.0, kDensity = 1000.0;  // [m/s^2], [kg/m^3]
+constexpr double kTankGravity = 10.0, kTankDensity = 1000.0;  // [m/s^2], [kg/m^3]
 // Of a slice: so wide, mirror images in both of its sides do not meet where material is.
-constexpr double kWidthCells = 3.0;
+constexpr double kTankWidthCells = 3.0;
 
 /// A box of water in its own axes, at rest, with hydrostatic pressure; sound ten times as fast as a wave on
 /// it.
@@ -19,12 +19,12 @@ struct Water {
     double cell;
     Vec3 box, room;  ///< of the water; of the tank [m]
     int per_side = 2;
-    double bulk = kDensity * 100.0 * kGravity * box.z();
+    double bulk = kTankDensity * 100.0 * kTankGravity * box.z();
 
     SolidScene scene() const {
         SolidScene s;
-        s.gravity = frame.at({0, 0, -kGravity});
-        s.density = kDensity;
+        s.gravity = frame.at({0, 0, -kTankGravity});
+        s.density = kTankDensity;
         s.law = solid::Fluid{bulk, 0.0};
         s.grid = grid_around(frame, {0, 0, 0}, room, cell);
         s.surfaces = {Surface::plane(frame.at({0, 0, 0}), frame.at({0, 0, 1})),
@@ -32,8 +32,8 @@ struct Water {
                       Surface::plane(frame.at({room.x(), 0, 0}), frame.at({-1, 0, 0}))};
         add_slice(s, box.y());
         for_each_part({0, 0, 0}, box, cell, per_side, [&](const Vec3& x, double volume) {
-            const double p = kDensity * kGravity * (box.z() - x.z());
-            s.points.add(frame.at(x), Vec3::Zero(), kDensity * volume / (1.0 - p / bulk), p);
+            const double p = kTankDensity * kTankGravity * (box.z() - x.z());
+            s.points.add(frame.at(x), Vec3::Zero(), kTankDensity * volume / (1.0 - p / bulk), p);
         });
         return s;
     }
@@ -60,7 +60,7 @@ PressureFit fit_pressure(const Mpm3d& flow, const Frame3& frame) {
 /// second.
 Measurement run_tank(const Setup& setup) {
     constexpr double kEnd = 1.0;
-    const double cell = 1.0 / static_cast<double>(setup.cells), width = kWidthCells * cell;
+    const double cell = 1.0 / static_cast<double>(setup.cells), width = kTankWidthCells * cell;
     double bed_pressure = 0.0, noise = 0.0, bed_force = 0.0, wall_force = 0.0, speed = 0.0, centre = 0.0;
     Measurement m;
     for (const double turn : {0.0, 20.0}) {
@@ -77,7 +77,7 @@ Measurement run_tank(const Setup& setup) {
         const auto force = [&](std::size_t s) {
             return (flow.body().impulse[s] - half[s]).norm() / (kEnd - since) / width;
         };
-        const double weight = mass * kGravity / width,
+        const double weight = mass * kTankGravity / width,
                      pressure_force = 0.5 * weight;  // a square of water: half its weight
         const PressureFit fit = fit_pressure(flow, water.frame);
         bed_pressure = std::max(bed_pressure, std::abs(fit.at_bed / weight - 1.0));
@@ -111,10 +111,10 @@ double front_of(const Mpm3d& flow) {
 /// solver PySPH.
 Measurement run_dam_front(const Setup& setup) {
     constexpr double kMeasured[][2] = {{0.849, 1.245}, {1.212, 1.443}, {1.602, 1.884}, {2.283, 2.689}, {2.950, 3.728}};
-    const double cell = 1.0 / static_cast<double>(setup.cells), width = kWidthCells * cell;
+    const double cell = 1.0 / static_cast<double>(setup.cells), width = kTankWidthCells * cell;
     const Water water{{}, cell, {1.0, width, 2.0}, {4.5, width, 2.6}, setup.per_side};
     Mpm3d flow(water.scene());
-    const double scale = std::sqrt(2.0 * kGravity);
+    const double scale = std::sqrt(2.0 * kTankGravity);
     constexpr double kWeighed = 2.65;  // T at which its energies are looked at, all but the last
     Measurement m;
     SolidStatus now;
@@ -127,7 +127,7 @@ Measurement run_dam_front(const Setup& setup) {
     m.steps = flow.status().step;
     m.front_error = ahead;
     m.add("lead", lead);
-    const double fallen = now.mass * kGravity * (1.0 - now.centre.z());
+    const double fallen = now.mass * kTankGravity * (1.0 - now.centre.z());
     m.add("energy_lost", 1.0 - now.kinetic / fallen);
     m.add("numerical_loss", now.numerical() / fallen);
     m.add("material_loss", now.material / fallen);
@@ -141,7 +141,8 @@ Measurement run_dam_front(const Setup& setup) {
 /// water that moves.
 Measurement run_dam_far(const Setup& setup) {
     constexpr double kReservoir = 10.0, kSlab = 0.5;
-    const double cell = 1.0 / static_cast<double>(setup.cells), width = kWidthCells * cell, c = std::sqrt(kGravity);
+    const double cell = 1.0 / static_cast<double>(setup.cells), width = kTankWidthCells * cell,
+                 c = std::sqrt(kTankGravity);
     const Water water{{}, cell, {kReservoir, width, 1.0}, {kReservoir + 22.0, width, 1.5}, setup.per_side};
     Mpm3d flow(water.scene());
     Measurement m;
@@ -156,7 +157,7 @@ Measurement run_dam_far(const Setup& setup) {
             const double x = (static_cast<double>(n) + 0.5) * kSlab - kReservoir;
             const double exact = x < -c * t        ? 1.0
                                  : x > 2.0 * c * t ? 0.0
-                                                   : std::pow(2.0 * c - x / t, 2) / (9.0 * kGravity);
+                                                   : std::pow(2.0 * c - x / t, 2) / (9.0 * kTankGravity);
             wrong += std::abs(volume[n] / (kSlab * width) - exact) * kSlab;
         }
         found.emplace_back("depth_error_" + std::to_string(static_cast<int>(t)), wrong / (c * t));
@@ -169,9 +170,9 @@ Measurement run_dam_far(const Setup& setup) {
 std::vector<Residual> tank_residuals() {
     // Half the weight of a square of water is what it pushes sideways: the integral of rho g (H - z) over H.
     double pressure_force = 0.0;
-    for (int k = 0; k < 1000; ++k) pressure_force += kDensity * kGravity * (1.0 - (k + 0.5) / 1000.0) / 1000.0;
+    for (int k = 0; k < 1000; ++k) pressure_force += kTankDensity * kTankGravity * (1.0 - (k + 0.5) / 1000.0) / 1000.0;
     return {{"side force of a square of water over half its weight - 1",
-             pressure_force / (0.5 * kDensity * kGravity) - 1.0, 1e-12}};
+             pressure_force / (0.5 * kTankDensity * kTankGravity) - 1.0, 1e-12}};
 }
 
 }  // namespace

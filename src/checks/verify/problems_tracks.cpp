@@ -86,20 +86,20 @@ Problem energy_problem(const std::string& name, const std::string& title, const 
     return problem;
 }
 
-constexpr double kRadius = 100.0, kAngle = 35.0;
+constexpr double kTrackRadius = 100.0, kAngle = 35.0;
 
 /// A bowl that is round: the track turned about its middle.
 Trial bowl_trial(const Setup& setup, Course& way, double turn, double mu) {
-    const double start = -kRadius * std::sin(kAngle * kDegree);
-    way = course(circle(kRadius), setup, 100.0 / static_cast<double>(setup.cells), turn * kDegree, start, -start);
-    way.z = [track = circle(kRadius)](double s, double n) { return track->z(std::hypot(s, n)); };
+    const double start = -kTrackRadius * std::sin(kAngle * kDegree);
+    way = course(circle(kTrackRadius), setup, 100.0 / static_cast<double>(setup.cells), turn * kDegree, start, -start);
+    way.z = [track = circle(kTrackRadius)](double s, double n) { return track->z(std::hypot(s, n)); };
     return on_course(way, setup, mu, Curvature::full);
 }
 
 /// Swings 40 s without friction (2 periods), along the grid and turned; and comes to rest with friction 0.2. Cells per
 /// radius.
 Measurement run_bowl(const Setup& setup) {
-    const TrackPointer track = circle(kRadius);
+    const TrackPointer track = circle(kTrackRadius);
     Course way;
     Measurement m;
     for (const double turn : {0.0, 27.0}) {
@@ -136,7 +136,7 @@ std::vector<Problem> track_problems() {
     Problem bowl{"bowl",
                  "thin blob swinging in a spherical bowl of 100 m from 35 degrees, against the pendulum",
                  {25, 50, 100},
-                 [] { return pendulum_residuals(kRadius, kAngle); },
+                 [] { return pendulum_residuals(kTrackRadius, kAngle); },
                  run_bowl};
     bowl.order_of = "stop_error";
     const std::string earlier = "what an earlier code had";

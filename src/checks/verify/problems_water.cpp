@@ -12,8 +12,8 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kLength = 100.0, kDam = 50.0, kEnd = 6.0;
-constexpr Index kAcross = 3;  ///< cells of a one-dimensional problem
+constexpr double kWaterLength = 100.0, kWaterDam = 50.0, kWaterEnd = 6.0;
+constexpr Index kWaterAcross = 3;  ///< cells of a one-dimensional problem
 
 /// Bumps and a wall of confined mass, some of it higher than the water.
 double heap(double x, double y) {
@@ -45,7 +45,7 @@ Stillness stillness(const Lake& lake, const Setup& setup, bool heaped, bool stee
     return still;
 }
 
-Measurement run_lake(const Setup& setup) {
+Measurement run_still_water(const Setup& setup) {
     Measurement m;
     double speed = 0.0, surface = 0.0, mass = 0.0, wall = 0.0;
     std::vector<Extra> speeds;
@@ -67,7 +67,7 @@ Measurement run_lake(const Setup& setup) {
 
 WaterScene channel(Index cells, const Function& depth) {
     WaterScene scene;
-    scene.grid = cells_over(cells, kAcross, kLength / static_cast<double>(cells));
+    scene.grid = cells_over(cells, kWaterAcross, kWaterLength / static_cast<double>(cells));
     scene.start = [depth](double x, double y) { return WaterState{depth(x, y)}; };
     return scene;
 }
@@ -93,13 +93,13 @@ double last_contour(const WaterFlow& flow, double level) {
 /// A dam break; `level` is the depth whose contour stands at `front` [m].
 template <class Wave>
 Measurement break_dam(const Wave& wave, double hl, double hr, double level, double front, const Setup& setup) {
-    WaterFlow flow(channel(setup.cells, [&](double x, double) { return x < kDam ? hl : hr; }));
-    Measurement m = run_water(flow, kEnd);
-    const auto state = [&](double x) { return wave.at((x - kDam) / kEnd); };
+    WaterFlow flow(channel(setup.cells, [&](double x, double) { return x < kWaterDam ? hl : hr; }));
+    Measurement m = run_water(flow, kWaterEnd);
+    const auto state = [&](double x) { return wave.at((x - kWaterDam) / kWaterEnd); };
     add_norms(flow,
               {[&](double x, double) { return state(x).depth; }, [&](double x, double) { return state(x).velocity; }},
               m);
-    m.front_error = last_contour(flow, level) - (kDam + kEnd * front);
+    m.front_error = last_contour(flow, level) - (kWaterDam + kWaterEnd * front);
     m.add("total_variation", total_variation(flow), "m");
     return m;
 }
@@ -173,7 +173,7 @@ std::vector<Problem> water_problems() {
                  "lakes at rest over a bump, a step and around an island, confined mass in them or not",
                  {50},
                  {},
-                 run_lake};
+                 run_still_water};
     lake.gates = {{0, "max_speed", 1e-12, "round-off: nothing flows between level cells"},
                   {0, "surface_error", 1e-13, "round-off of 10 m"},
                   volume};

@@ -8,7 +8,7 @@
 namespace frana::verify {
 namespace {
 
-constexpr Index kAcross = 3;  ///< cells across
+constexpr Index kSlopeAcross = 3;  ///< cells across
 
 /// A sheet of 1 m starts from rest down a plane under friction: away from the ends its speed is
 /// u = u_n tanh(a t / u_n), u_n the normal flow's (Manning's h^(2/3) sqrt(S) / n for small slopes).
@@ -16,7 +16,7 @@ double normal_flow_error(double slope, bool steep, const WaterFriction& friction
                          Measurement& m) {
     constexpr double kPlane = 4000.0, kTime = 60.0, kDepth = 1.0;
     WaterScene scene;
-    scene.grid = cells_over(cells, kAcross, kPlane / static_cast<double>(cells));
+    scene.grid = cells_over(cells, kSlopeAcross, kPlane / static_cast<double>(cells));
     scene.bed = [=](double x, double) { return -slope * x; };
     scene.start = [](double, double) { return WaterState{kDepth}; };
     scene.sides[1] = WaterSide::open;
@@ -51,7 +51,7 @@ Measurement run_normal(const Setup& setup) {
 Measurement run_rain(const Setup& setup) {
     constexpr double kLength = 100.0, kSlope = 0.05, kManning = 0.03, kRain = 2e-5, kTime = 1200.0;
     WaterScene scene;
-    scene.grid = cells_over(setup.cells, kAcross, kLength / static_cast<double>(setup.cells));
+    scene.grid = cells_over(setup.cells, kSlopeAcross, kLength / static_cast<double>(setup.cells));
     scene.bed = [](double x, double) { return kSlope * (kLength - x); };
     scene.rain = [](double, double) { return kRain; };
     scene.sides[1] = WaterSide::open;
@@ -61,7 +61,7 @@ Measurement run_rain(const Setup& setup) {
     double before = 0.0, after = 0.0;  // what has left, at the last step and the one before it
     Measurement m =
         run_water(flow, kTime, [&](const WaterFlow& now) { before = after, after = now.status().ledger.left; });
-    const double width = static_cast<double>(kAcross) * scene.grid.cell;
+    const double width = static_cast<double>(kSlopeAcross) * scene.grid.cell;
     add_norms(flow,
               {[&](double x, double) { return std::pow(kManning * kRain * x / std::sqrt(kSlope), 0.6); },
                [&](double x, double) { return kRain * x / std::pow(kManning * kRain * x / std::sqrt(kSlope), 0.6); }},

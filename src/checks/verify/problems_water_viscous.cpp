@@ -8,8 +8,8 @@
 namespace frana::verify {
 namespace {
 
-constexpr Index kAcross = 3;  ///< cells across
-constexpr double kNu = 1e-4;  ///< [m^2/s]
+constexpr Index kViscousAcross = 3;  ///< cells across
+constexpr double kNu = 1e-4;         ///< [m^2/s]
 
 /// What is measured of a film, and of all of them together.
 struct Film {
@@ -28,7 +28,7 @@ Film even_film(double slope, bool steep, const WaterFriction& friction, double t
     constexpr double kPlane = 120.0, kDepth = 0.02;
     constexpr Index kCells = 200;  // whatever the grid: so many that the ends are not felt in the middle
     WaterScene scene;
-    scene.grid = cells_over(kCells, kAcross, kPlane / static_cast<double>(kCells));
+    scene.grid = cells_over(kCells, kViscousAcross, kPlane / static_cast<double>(kCells));
     scene.bed = [=](double x, double) { return -slope * x; };
     scene.start = [](double, double) { return WaterState{kDepth}; };
     scene.sides[1] = WaterSide::open;
@@ -53,7 +53,7 @@ Film even_film(double slope, bool steep, const WaterFriction& friction, double t
 void rain_fed_film(const Setup& setup, Measurement& m) {
     constexpr double kLength = 20.0, kSlope = 0.05, kRain = 2e-5, kTime = 900.0;
     WaterScene scene;
-    scene.grid = cells_over(setup.cells, kAcross, kLength / static_cast<double>(setup.cells));
+    scene.grid = cells_over(setup.cells, kViscousAcross, kLength / static_cast<double>(setup.cells));
     scene.bed = [](double x, double) { return kSlope * (kLength - x); };
     scene.rain = [](double, double) { return kRain; };
     scene.sides[1] = WaterSide::open;

@@ -128,14 +128,14 @@ std::vector<ProductRaster> product_rasters(const Frame& last, const std::string&
     return rasters;
 }
 
-void take_barriers_off(std::vector<ProductRaster>& rasters, const Raster& bed) {
+void show_ground_at_end(std::vector<ProductRaster>& rasters, const Raster& bed, bool follows) {
     const ProductRaster* const change = find_product(rasters, "bed_change");
     for (ProductRaster& product : rasters) {
         if (product.name != kFinalElevation || change == nullptr) continue;
         std::vector<double>& z = product.raster.values;
         expect(bed.values.size() == z.size(), "rasters and the bed that they show have the same nodes");
         for (std::size_t node = 0; node < z.size(); ++node)
-            if (!std::isnan(z[node])) z[node] = bed.values[node] + change->raster.values[node];
+            if (!std::isnan(z[node])) z[node] = bed.values[node] + (follows ? change->raster.values[node] : 0.0);
     }
 }
 

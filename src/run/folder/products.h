@@ -42,8 +42,9 @@ private:
 /// arrival times and all nodes without terrain become nodata.
 std::vector<ProductRaster> product_rasters(const Frame& last, const std::string& crs_wkt);
 
-/// The bed at the end without the barriers that stood on it for columns: that of the start and its change.
-void take_barriers_off(std::vector<ProductRaster>& rasters, const Raster& bed);
+/// Makes final_elevation, where the rasters have it, the bed of the start and, where that follows, its change. The solver's
+/// own bed is filtered, and has barriers in it: no later run could begin on that.
+void show_ground_at_end(std::vector<ProductRaster>& rasters, const Raster& bed, bool follows);
 
 /// The parameters of a friction that differs in space, as the nodes of its bed have them: mu, xi, ...
 std::vector<ProductRaster> friction_rasters(const Friction& friction, const Raster& bed);

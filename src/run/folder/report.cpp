@@ -47,16 +47,17 @@ std::string left_text(const RunRecord& r) {
                        r.extras.water->left);
 }
 
-/// "took 12 300 m3 (growth 1.8), 0.7 m deep at most, budget 3e-16": volumes as they are in the flow.
+/// "took 12 300 m3 (growth 1.8), 0.7 m deep at most, budget 3e-16": volumes as they are in the flow. What it grew from is
+/// what was released and came in.
 std::string bed_text(const RunRecord& r) {
     const Status::Bed& bed = r.summary.last.bed;
-    const double had = r.summary.first.mass;
+    const double given = r.summary.first.mass + r.summary.last.mass_in - r.summary.first.mass_in;
     return fmt::format(
         "the flow took {:.6g} m3 of it and of what it had left behind (its mass grew {:.3g} times), {:.3g} m deep at "
         "most; left behind {:.6g} "
         "m3; balance {:.1e}",
-        bed.eroded / r.density, had > 0.0 ? (had + bed.eroded) / had : 1.0, bed.deepest, bed.deposited / r.density,
-        budget(r.summary.first, r.summary.last).bed_error);
+        bed.eroded / r.density, given > 0.0 ? (given + bed.eroded) / given : 1.0, bed.deepest,
+        bed.deposited / r.density, budget(r.summary.first, r.summary.last).bed_error);
 }
 
 /// "300 m3 at t = 12.4 s, when the flow reached it".

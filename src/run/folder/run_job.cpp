@@ -184,9 +184,6 @@ void add_friction(const Scene& scene, const Simulation& simulation, std::vector<
     }
 }
 
-/// They have the barriers as ground, which sinks and rises.
-bool columns_among_barriers(const Scene& scene) { return !scene.barriers.empty() && scene.bed_evolves(); }
-
 void close_record(RunRecord& record, const fs::path& run_dir) {
     write_text(run_dir / "report.md", report_markdown(record, run_dir));
     record.files = files_made(run_dir);
@@ -310,7 +307,7 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     note_results(record, rasters);
     add_friction(scene, simulation, rasters);
     const Raster bed = shown_bed(scene, simulation, rasters);
-    if (columns_among_barriers(scene)) take_barriers_off(rasters, bed);
+    show_ground_at_end(rasters, bed, scene.bed_evolves());
     if (scene.output.geotiff && !rasters.empty() && bed.geometry == rasters.front().raster.geometry)
         rasters.push_back(elevation_raster(bed));
     if (scene.output.vtk && scene.wider) write_terrain(run_dir, bed);
@@ -347,7 +344,7 @@ RunRecord carry_out_in_memory(const Scene& scene, Simulation& simulation, RunRec
     note_simulation(record, scene, simulation);
     note_results(record, rasters);
     add_friction(scene, simulation, rasters);
-    if (columns_among_barriers(scene)) take_barriers_off(rasters, shown_bed(scene, simulation, rasters));
+    show_ground_at_end(rasters, shown_bed(scene, simulation, rasters), scene.bed_evolves());
     return record;
 }
 
