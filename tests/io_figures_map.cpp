@@ -160,6 +160,20 @@ TEST_CASE("Barriers are drawn on their lines, and a few of them by name", "[figu
     CHECK(named > white_at_name(figure) + 100);
 }
 
+TEST_CASE("No name stands on a house beside another", "[figures]") {
+    if (cannot_draw()) return;
+    MapFigure figure = figures::valley();
+    const auto house = [](double x, double y) {
+        return Polyline{{x, y}, {x + 40, y}, {x + 40, y + 40}, {x, y + 40}, {x, y}};
+    };
+    figure.barriers = {{"the mill of the valley", house(600, 480)}, {"b", house(700, 480)}, {"c", house(720, 560)}};
+    const Pixels picture = drawn(figure);
+    const MapLayout layout = lay_out(figure);
+    for (const Vec2& west : {Vec2(600, 500), Vec2(700, 500), Vec2(720, 580)})
+        for (const Vec2& on : {west, Vec2(west + Vec2(40, 0)), Vec2(west + Vec2(20, 20)), Vec2(west + Vec2(20, -20))})
+            CHECK(figures::distance(at(picture, layout.pixel(on)), colours::barrier) <= 10);
+}
+
 TEST_CASE("Terrain without data is plain light grey", "[figures]") {
     if (cannot_draw()) return;
     MapFigure figure = figures::valley();

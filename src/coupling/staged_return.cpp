@@ -36,7 +36,7 @@ void StagedRun::note_departed() {
 /// run down the same cells again and again.
 Vec2 StagedRun::place_of_column(const DepartedPoint& point, const Vec2& to) {
     const Vec2 left = point.position.head<2>();
-    const Vec2 x = columns_->may_stand(to.x(), to.y()) ? to : left;
+    Vec2 x = columns_->may_stand(to.x(), to.y()) ? to : left;
     const Flow& flow = columns_->flow();
     const bool at_hole = in_hole_wall(flow, x);
     if (!at_hole && (!on_raised(x) || above_barrier(x))) return x;

@@ -102,7 +102,7 @@ private:
     std::vector<double> windows() {
         constexpr double kShortest = 1e-6, kLongest = 10.0;
         constexpr std::size_t kMost = 8;
-        const std::vector<double> windows = case_.numbers(prefix_ + "windows");
+        std::vector<double> windows = case_.numbers(prefix_ + "windows");
         const bool ascend = std::adjacent_find(windows.begin(), windows.end(), std::greater_equal<>()) == windows.end();
         const bool fit = !windows.empty() && windows.size() <= kMost && windows.front() >= kShortest &&
                          windows.back() <= kLongest && ascend;

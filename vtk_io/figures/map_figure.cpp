@@ -159,40 +159,54 @@ private:
 
     void barriers() {
         constexpr std::size_t most_named = 6;  // houses of a village would hide what comes to them
+        std::vector<std::pair<std::string, Vec2>> names;
         for (const NamedLine& barrier : figure_.barriers) {
             const auto pieces = on_sheet(barrier.line);
+            if (pieces.empty()) continue;
             for (const auto& piece : pieces)
                 stroke_cased(canvas_, piece, {colours::barrier, kBarrierPen * layout_.unit, {}});
-            if (!pieces.empty() && figure_.barriers.size() <= most_named) name(barrier.name, right_of(pieces));
+            const Rectangle box = box_of(pieces);
+            if (std::max(box.width(), box.height()) < kSmall * layout_.unit) houses_.push_back(box);
+            names.emplace_back(barrier.name, Vec2(box.x1, 0.5 * (box.y0 + box.y1)));  // to its right
         }
+        if (names.size() > most_named) return;
+        for (const auto& [text, at] : names) name(text, at);
     }
 
-    /// At half the height of all of them, where they end to the right.
-    static Vec2 right_of(const std::vector<std::vector<Vec2>>& pieces) {
+    static Rectangle box_of(const std::vector<std::vector<Vec2>>& pieces) {
         Vec2 low = pieces.front().front(), high = low;
         for (const auto& piece : pieces)
             for (const Vec2& p : piece) low = low.cwiseMin(p), high = high.cwiseMax(p);
-        return {high.x(), 0.5 * (low.y() + high.y())};
+        return {low.x(), low.y(), high.x(), high.y()};
     }
 
-    /// A name beside a point, on the side where there is room.
+    /// A name beside a point: to its right, or where that is taken, as near as there is room.
     void name(const std::string& text, const Vec2& at) {
         const double u = layout_.unit;
+        const Rectangle& f = layout_.frame;
         TextStyle style{0.9 * u, Across::left, Upward::middle, 0.0, false, true, {}};
-        const bool room = at.x() + 1.2 * u + text_size(text, style).x() < layout_.frame.x1;
-        if (!room) style.across = Across::right;
-        const double width = text_size(text, style).x(), x = at.x() + (room ? 0.9 : -0.9) * u;
-        double y = std::clamp(at.y(), layout_.frame.y0 + u, layout_.frame.y1 - u);
-        const auto box = [&] {
-            return Rectangle{room ? x : x - width, y - 0.6 * u, room ? x + width : x, y + 0.6 * u};
+        const double width = text_size(text, style).x(), level = std::clamp(at.y(), f.y0 + u, f.y1 - u);
+        const auto box = [&](bool right, double y) {
+            const double x = at.x() + (right ? 0.9 * u : -0.9 * u - width);
+            return Rectangle{x, y - 0.6 * u, x + width, y + 0.6 * u};
         };
-        for (bool moved = true; moved;) {  // above the names that stand there already
-            moved = false;
-            for (const Rectangle& other : names_)
-                if (box().meets(other)) y = other.y1 + 0.61 * u, moved = true;
-        }
-        names_.push_back(box());
-        canvas_.text(text, {x, y}, style);
+        const auto fits = [&](const Rectangle& r) {
+            const auto meets = [&](const Rectangle& other) { return r.meets(other); };
+            return r.x0 > f.x0 && r.x1 < f.x1 - 0.3 * u && r.y0 >= f.y0 && r.y1 <= f.y1 &&
+                   std::none_of(names_.begin(), names_.end(), meets) &&
+                   std::none_of(houses_.begin(), houses_.end(), meets);
+        };
+        const auto nearest_free = [&] {
+            constexpr int kFarthest = 30;  // steps up and down
+            for (int n = 0; n <= kFarthest; ++n)
+                for (const double y : {level + 0.31 * u * n, level - 0.31 * u * n})
+                    for (const bool right : {true, false})
+                        if (fits(box(right, y))) return box(right, y);
+            return box(at.x() + 1.2 * u + width < f.x1, level);
+        };
+        const Rectangle place = nearest_free();
+        names_.push_back(place);
+        canvas_.text(text, {place.x0, 0.5 * (place.y0 + place.y1)}, style);
     }
 
     void axes() {
@@ -235,9 +249,11 @@ private:
     const MapFigure& figure_;
     const MapLayout& layout_;
     Canvas canvas_;
-    Raster field_;                   ///< at the pixels of the frame
-    std::vector<Rectangle> labels_;  ///< of contours
-    std::vector<Rectangle> names_;   ///< of barriers, profiles and gauges
+    Raster field_;                         ///< at the pixels of the frame
+    std::vector<Rectangle> labels_;        ///< of contours
+    static constexpr double kSmall = 3.0;  ///< a barrier that names keep off [units]: a name would hide it
+    std::vector<Rectangle> names_;         ///< of barriers, profiles and gauges
+    std::vector<Rectangle> houses_;        ///< small barriers
 };
 
 }  // namespace

@@ -49,6 +49,7 @@ struct MapFigure {
     std::vector<MapClass> classes;
     std::vector<NamedLine> barriers;  ///< in plan: outlines are closed, faces of walls along lines are not
     std::vector<NamedLine> profiles;
+    std::string profiles_are = "profile";  ///< in the legend
     std::vector<NamedPoint> gauges;
     std::string footer;                          ///< model, parameters; wrapped
     std::optional<std::array<double, 4>> focus;  ///< xmin, ymin, xmax, ymax to be in view [m]

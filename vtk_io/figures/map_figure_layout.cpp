@@ -157,8 +157,7 @@ std::vector<LegendEntry> make_legend(const MapFigure& figure, const MapLayout& l
     if (!figure.barriers.empty())
         legend.push_back(entry(Kind::cased_line, colours::barrier, kBarrierPen * u, "barrier"));
     if (!figure.profiles.empty()) {
-        legend.push_back(
-            entry(Kind::cased_line, colours::black, 0.12 * u, figure.shows_overlay() ? "runout path" : "profile"));
+        legend.push_back(entry(Kind::cased_line, colours::black, 0.12 * u, figure.profiles_are));
         legend.back().pen.dash = {0.55 * u, 0.3 * u};
     }
     if (!figure.gauges.empty()) legend.push_back(entry(Kind::point, colours::black, 1.0, "gauge"));

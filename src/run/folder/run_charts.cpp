@@ -101,15 +101,41 @@ Column sizes(const Column& values) {
     return result;
 }
 
+bool has_column(const Table& table, const std::string& name) {  // a run of an older version has fewer
+    return std::find(table.columns.begin(), table.columns.end(), name) != table.columns.end();
+}
+
+bool has_values(const Table& table, const std::string& name) {
+    if (!has_column(table, name)) return false;
+    const Column& values = table.column(name);
+    return std::any_of(values.begin(), values.end(), [](double value) { return value != 0.0; });
+}
+
+/// What the flow got from the bed: all that the other parts have more than the residual (observe/budget.h).
+Column energy_of_bed(const Table& history) {
+    Column sum(history.column("t").size(), 0.0);
+    const auto add = [&](const char* name, double sign) {
+        const Column values = relative_to_start(history.column(name));
+        for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += sign * values[k];
+    };
+    for (const char* part : {"kinetic", "potential", "stored", "dissipated", "energy_left"}) add(part, 1.0);
+    add("energy_residual", -1.0);
+    return sum;
+}
+
 ChartFigure energy_chart(const FigureSource& source, const Table& history) {
     const Column& t = history.column("t");
     ChartFigure figure = chart(source, "energy", "time [s]");
     ChartPanel energy{"energy [J]", {}, false, {}, 1.0};
-    energy.curves = {curve("kinetic", t, history.column("kinetic")),
-                     curve("potential, from the start", t, relative_to_start(history.column("potential"))),
-                     curve("dissipated", t, history.column("dissipated")),
-                     curve("left the domain", t, history.column("energy_left")),
-                     curve("residual", t, history.column("energy_residual"))};
+    const bool comes_in = has_values(history, "mass_in");
+    energy.curves = {
+        curve("kinetic", t, history.column("kinetic")),
+        curve("potential, from the start", t, relative_to_start(history.column("potential"))),
+        curve("dissipated", t, history.column("dissipated")),
+        curve(comes_in ? "left the domain less what came in" : "left the domain", t, history.column("energy_left")),
+        curve("residual", t, history.column("energy_residual"))};
+    if (has_values(history, "eroded_mass") || has_values(history, "deposited_mass"))
+        energy.curves.push_back(curve("got from the bed", t, energy_of_bed(history)));
     // Where points are, what they hold and how they lost it: parts of "dissipated".
     const std::vector<std::pair<const char*, const char*>> in_3d = {{"stored in points", "stored"},
                                                                     {"points' friction", "points_friction"},
@@ -119,8 +145,7 @@ ChartFigure energy_chart(const FigureSource& source, const Table& history) {
     ChartPanel points{"energy of points [J]", {}, false, {}, 1.0};
     bool any = false;
     for (const auto& [name, column] : in_3d) {
-        const auto& known = history.columns;  // a run of an older version has none of these
-        if (std::find(known.begin(), known.end(), column) == known.end()) continue;
+        if (!has_column(history, column)) continue;
         const Column& values = history.column(column);
         any = any || std::any_of(values.begin(), values.end(), [](double value) { return value != 0.0; });
         points.curves.push_back(curve(name, t, values));

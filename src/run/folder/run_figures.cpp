@@ -57,6 +57,7 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
     map.barriers = barrier_plans(source.barriers);
     for (const Profile& profile : source.profiles) map.profiles.push_back({profile.name, profile.line});
     for (const Section& section : source.sections) map.profiles.push_back({section.name, section.line});
+    if (!source.sections.empty()) map.profiles_are = source.profiles.empty() ? "section" : "profile, section";
     for (const Gauge& gauge : source.gauges) map.gauges.push_back({gauge.name, gauge.point});
     map.footer = source.footer;
     for (const std::string& more : {crs_name(source.bed.crs_wkt), source.date})
@@ -170,6 +171,7 @@ void add_overlay(const FigureSource& source, Gallery& gallery) {
         MapFigure map = map_of(source, *peak, "simulated and surveyed extent", nullptr);
         map.field_label = "peak depth [m]";
         map.profiles.clear();
+        map.profiles_are = "runout path";
         if (!source.runout_path.empty()) map.profiles.push_back({"runout path", source.runout_path});
         map.simulated = pixel_outline(peak->raster, source.footprint_depth);
         const Overlap areas = overlap(peak->raster, source.footprint_depth, rings_of(*source.survey));
