@@ -28,7 +28,7 @@ private:
 template <class Writer>
 class WithBase64Stream : public Writer {
 public:
-    static WithBase64Stream* New() {
+    static WithBase64Stream* New() {  // NOLINT(readability-identifier-naming): as VTK calls it
         auto* const made = new WithBase64Stream;
         made->InitializeObjectBase();
         return made;

@@ -118,7 +118,8 @@ struct LineMesh {
     void add(const std::vector<Vec2>& ring, int what) {
         std::vector<vtkIdType> line;
         for (std::size_t k = 0; k < ring.size(); ++k) {
-            const Vec2 a = ring[k], way = ring[(k + 1) % ring.size()] - a;
+            const Vec2& a = ring[k];
+            const Vec2 way = ring[(k + 1) % ring.size()] - a;
             const auto parts = std::max<Index>(static_cast<Index>(std::ceil(way.norm() / bed.geometry.cell)), 1);
             const bool last = k + 1 == ring.size();
             for (Index part = 0; part < parts + (last ? 1 : 0); ++part) {
