@@ -112,7 +112,7 @@ ExpectedWidth expected_width(const Raster& bed, const Seeds& release, double fri
     const Rectangle rectangle(release);
     const Polyline path = steepest_path(bed, nearest_seed(release, rectangle.middle));
     if (!(length_of(path) > 0.0)) return result;
-    const Vec2 start = path.front();
+    const Vec2& start = path.front();
     double area = 0.0;
     for (const double size : release.size) area += size * size;
     const Vec2 down = direction_at(path, 0, std::sqrt(area));

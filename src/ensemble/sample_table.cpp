@@ -57,6 +57,7 @@ void read_sample_table(const std::filesystem::path& file, EnsemblePlan& plan, Pr
     std::getline(stream, line);
     const std::vector<std::string> names = comma_fields(line);
     std::vector<bool> is_key;
+    is_key.reserve(names.size());
     for (const std::string& name : names) is_key.push_back(note_key(name, file.string() + ":1", plan, problems));
     double sum = 0.0;
     for (int number = 2; std::getline(stream, line); ++number) {

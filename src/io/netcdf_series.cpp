@@ -101,7 +101,7 @@ std::shared_ptr<GDALMDArray> make_field(GDALGroup& root, const Dimensions& dimen
     CPLStringList options;
     options.SetNameValue("COMPRESS", "DEFLATE");
     options.SetNameValue("BLOCKSIZE", block.c_str());
-    const auto array =
+    auto array =
         root.CreateMDArray(variable.name, dimensions, GDALExtendedDataType::Create(GDT_Float32), options.List());
     if (!array) return nullptr;
     array->SetNoDataValue(double(kNothing));

@@ -78,7 +78,7 @@ std::vector<Vec2> corners_of_material(const CaseFile& file, const GisReader& rea
     for (Index i = 0; i < file.count("release"); ++i) {
         const std::string table = fmt::format("release.{}.", i);
         std::string name = file.path(table + "outline").string();
-        if (file.given(table + "layer")) name += kLayerMark + file.word(table + "layer");
+        if (file.given(table + "layer")) name.append(kLayerMark).append(file.word(table + "layer"));
         take_corners(reader.read_polygons(name, whole.crs_wkt, said_later), points);
     }
     take_inflows(file, reader, whole, points);

@@ -56,6 +56,7 @@ KeptPeaks::KeptPeaks(std::vector<KeptRun> runs, std::vector<std::string> fields,
 void KeptPeaks::for_each_run(const std::vector<std::size_t>& fields,
                              const std::function<void(std::size_t, const SparseRasters&)>& body) const {
     std::vector<std::string> names;
+    names.reserve(fields.size());
     for (const std::size_t f : fields) names.push_back(fields_.at(f));
     std::map<fs::path, std::size_t> count;
     for (const KeptRun& run : runs_) ++count[run.file];

@@ -187,6 +187,7 @@ private:
         write_terrain_maps(dir_, base_.bed, probabilities_);
         const auto look = write_states(dir_, base_.title);
         summary_.files.insert(summary_.files.end(), {"terrain.vti", "maps.vti"});
+        // NOLINTNEXTLINE(readability-container-size-empty): of JSON, which may hold something else
         if (look["states"]["probability"] == "") summary_.files.emplace_back("states/probability.pvsm");
     }
 
