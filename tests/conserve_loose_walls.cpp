@@ -28,8 +28,8 @@ Barrier wall_of(double x0, double y0, double x1, double y1, double height) {
     return wall;
 }
 
-void loosen(Scene& scene) {
-    scene.erodible = ErodibleBed{Raster::filled(scene.bed.geometry, kLoose), scene.density, erosion::Growth{0.05}};
+void loosen(Scene& scene, double growth = 0.05) {
+    scene.erodible = ErodibleBed{Raster::filled(scene.bed.geometry, kLoose), scene.density, erosion::Growth{growth}};
 }
 
 /// A slide that comes down a slope onto a plain and against a wall, which it passes on both sides. All ground is loose.
@@ -118,7 +118,7 @@ TEST_CASE("Ground below the top of a buried barrier stays, and what lies over it
     const Scene scene = slide([&](Scene& s) {
         s.barriers = {wall_of(wall.x0, wall.y0, wall.x1, wall.y1, 0.0)};
         s.barriers[0].top = kTop;
-        s.erodible->law = erosion::Growth{0.2};
+        loosen(s, 0.2);
     });
     const std::vector<bool> carries = footing(scene, wall);
     WalledColumns run(scene);
@@ -172,7 +172,7 @@ TEST_CASE("Trees before a barrier hold back what flows, and none stand on it", "
         if (!wall) among_trees = std::max(among_trees, left[n]);
     }
     CHECK(over_it > 10);
-    // What is held back is nearest to a node two cells away and moves by a quarter of one at most, so this is its weight here.
+    // What is held back is nearest to a node two cells away, and moves by a quarter of one at most. This is its weight here.
     CHECK(on_it < 0.5 * 0.25 * 0.25 * among_trees);
     CHECK(before > 100);
 }
@@ -241,11 +241,12 @@ TEST_CASE("A deposit that has become ground before a barrier takes no momentum f
 
 namespace {
 
+constexpr double kSlow = 0.01;  ///< growth [1/m]: the slide goes farther
+
 /// A wall on a part that grows, in loose ground.
 Scene walled_on_large() {
     Scene scene = slide_on_large();
-    loosen(scene);
-    scene.erodible->law = erosion::Growth{0.01};
+    loosen(scene, kSlow);
     scene.barriers = {wall_of(3930.0, 975.0, 3945.0, 1030.0, 4.0)};
     return scene;
 }
@@ -264,8 +265,7 @@ TEST_CASE("Barriers in loose ground on a part that grows are those of a run on a
     grow_with(on_part, [](const Raster& part) { return GroundFields{{}, Raster::filled(part.geometry, kLoose), {}}; });
     whole.bed = ground_on(kLarge);
     whole.wider.reset();
-    loosen(whole);
-    whole.erodible->law = erosion::Growth{0.01};
+    loosen(whole, kSlow);
     WalledColumns part(on_part), all(whole);
     const Index held = part.columns().flow().grid.size();
     while (part.columns().flow().grid.size() == held) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/colour.h"
 #include "terrain/raster.h"
 
 namespace frana {
@@ -33,9 +34,8 @@ class ReliefGrey {
 public:
     explicit ReliefGrey(const std::vector<float>& shade);
     double operator()(double shade) const {
-        const double place = (shade - low_) / span_;                      // NaN gives the darkest
-        const double above = std::min(place, 1.0) * (kLevels - 1) + 0.5;  // of each pixel: lround() takes longer
-        return levels_[place > 0.0 ? static_cast<std::size_t>(above) : 0];
+        const double place = (shade - low_) / span_;  // NaN gives the darkest
+        return levels_[place > 0.0 ? nearest_whole(std::min(place, 1.0) * (kLevels - 1)) : 0];
     }
 
 private:

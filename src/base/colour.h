@@ -23,10 +23,15 @@ enum class Colormap {
 /// Colour at t in [0, 1] (clamped; NaN counts as 0).
 Colour colour_at(Colormap map, double t);
 
+/// The nearest whole number to one that is not negative. It is asked for each pixel, and lround() takes longer.
+inline std::size_t nearest_whole(double value) {
+    const double above = value + 0.5;
+    return static_cast<std::size_t>(above);
+}
+
 /// The nearest of a channel's values.
 inline std::uint8_t channel_of(double value) {
-    const double above = std::clamp(value, 0.0, 255.0) + 0.5;  // of each pixel: lround() takes longer
-    return static_cast<std::uint8_t>(above);
+    return static_cast<std::uint8_t>(nearest_whole(std::clamp(value, 0.0, 255.0)));
 }
 
 /// (1 - share) a + share b, channel by channel; alpha of `a`.

@@ -183,8 +183,8 @@ std::vector<BarrierNode> barrier_nodes(const Scene& scene) {
             for (Index i = near.i0; i < near.i0 + near.nx; ++i) {
                 const Vec2 node(g.x(i), g.y(j));
                 if (!near_box(box, node, 0.5 * g.cell)) continue;
-                const double top = top_near(solid, node, g.cell);
                 if (std::isnan(scene.bed.at(i, j))) continue;  // no ground to stand on
+                const double top = top_near(solid, node, g.cell);
                 if (std::isfinite(top) && is_in_reach(solid, node, top, g.cell)) nodes.push_back({i, j, top});
             }
     }

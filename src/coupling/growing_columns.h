@@ -42,7 +42,7 @@ private:
     NodeBox held_;                            ///< the scene's bed, of the whole terrain
     NodeBox shown_;                           ///< nodes of the whole terrain that frames show
     std::vector<BarrierNode> barrier_nodes_;  ///< those of barriers, of the whole terrain
-    Footings footings_;
+    Footings footings_;                       ///< of the barriers
     std::unique_ptr<DepthAveraged> columns_;
     Index times_grown_ = 0;
     bool aside_ = false;  ///< it comes back to a state that was put aside: until then there is room enough

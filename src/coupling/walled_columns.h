@@ -27,7 +27,7 @@ private:
     void hold_all(Scene scene, Start start);
 
     double density_;
-    Footings footings_;
+    Footings footings_;                        ///< of barriers on all of the terrain
     std::unique_ptr<DepthAveraged> whole_;     ///< on all of the terrain
     std::unique_ptr<GrowingColumns> growing_;  ///< or on a part of it
     ColumnWatch watch_;

@@ -24,8 +24,7 @@ public:
             colours_[k] = colour_at(map, static_cast<double>(k) / (kColours - 1));
     }
     const Colour& operator()(double t) const {
-        const double above = std::min(t, 1.0) * (kColours - 1) + 0.5;  // of each pixel: lround() takes longer
-        return colours_[t > 0.0 ? static_cast<std::size_t>(above) : 0];
+        return colours_[t > 0.0 ? nearest_whole(std::min(t, 1.0) * (kColours - 1)) : 0];
     }
 
 private:

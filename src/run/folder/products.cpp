@@ -20,7 +20,8 @@ namespace frana {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char *kElevation = "elevation", *kFinalElevation = "final_elevation";
+constexpr const char *kElevation = "elevation", *kFinalElevation = "final_elevation", *kMetres = "m";
+constexpr const char* kGroundAtEnd = "elevation of the bed at the end of the run";
 
 /// How a node field becomes a raster.
 struct ProductRule {
@@ -45,7 +46,7 @@ constexpr ProductRule rules[] = {
     {"deposited_depth", "deposited_depth", 0, "m",
      "depth of what the flow left on the bed and lies there at the end, along gravity"},
     {"bed_change", "bed_change", 0, "m", "deposited depth less eroded depth"},
-    {kFinalElevation, kElevation, 0, "m", "elevation of the bed at the end of the run", false},
+    {kFinalElevation, kElevation, 0, kMetres, kGroundAtEnd, false},
     {"final_damage", "damage", 0, "1", "damage at the end of the run: 0 whole, 1 grains; where material lies", false},
     {"final_water_depth", "water_depth", 0, "m", "depth of free water at the end of the run, along gravity"},
 };
@@ -74,14 +75,13 @@ Raster raster_of(const Frame& frame, const ProductRule& rule, const std::string&
 /// Not every solver knows it; all others must be there.
 bool needed(const std::string& name) {
     for (const char* other : {"peak_dynamic_pressure", "final_damage", "final_water_depth", "eroded_depth",
-                              "deposited_depth", "bed_change", kFinalElevation})
+                              "deposited_depth", "bed_change"})
         if (name == other) return false;
     return true;
 }
 
-/// The bed is shown again where it may have changed.
 bool is_of(const Frame& last, const ProductRule& rule) {
-    if (std::string(rule.name) == kFinalElevation) return last.node("bed_change") != nullptr;
+    if (std::string(rule.name) == kFinalElevation) return false;  // a frame's bed is filtered: add_ground_at_end()
     return last.node(rule.field) != nullptr || needed(rule.name);
 }
 
@@ -128,15 +128,16 @@ std::vector<ProductRaster> product_rasters(const Frame& last, const std::string&
     return rasters;
 }
 
-void show_ground_at_end(std::vector<ProductRaster>& rasters, const Raster& bed, bool follows) {
+void add_ground_at_end(std::vector<ProductRaster>& rasters, const Raster& bed, bool follows) {
     const ProductRaster* const change = find_product(rasters, "bed_change");
-    for (ProductRaster& product : rasters) {
-        if (product.name != kFinalElevation || change == nullptr) continue;
-        std::vector<double>& z = product.raster.values;
-        expect(bed.values.size() == z.size(), "rasters and the bed that they show have the same nodes");
-        for (std::size_t node = 0; node < z.size(); ++node)
-            if (!std::isnan(z[node])) z[node] = bed.values[node] + (follows ? change->raster.values[node] : 0.0);
-    }
+    if (change == nullptr) return;
+    ProductRaster ground{kFinalElevation, kMetres, kGroundAtEnd, change->raster};
+    ground.raster.source = kFinalElevation;
+    std::vector<double>& z = ground.raster.values;  // its change so far
+    expect(bed.values.size() == z.size(), "rasters and the bed that they show have the same nodes");
+    for (std::size_t node = 0; node < z.size(); ++node)
+        if (!std::isnan(z[node])) z[node] = bed.values[node] + (follows ? z[node] : 0.0);
+    rasters.push_back(std::move(ground));
 }
 
 std::vector<ProductRaster> friction_rasters(const Friction& friction, const Raster& bed) {

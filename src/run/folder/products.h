@@ -38,13 +38,13 @@ private:
 
 /// The rasters of a run as its frame has them: peak_depth, peak_speed, peak_pressure, peak_dynamic_pressure
 /// (when the solver has it), arrival_time, final_depth, final_velocity_x, final_velocity_y, final_damage of what can break,
-/// final_water_depth beside it, eroded_depth, deposited_depth, bed_change and final_elevation of an erodible bed. Negative
-/// arrival times and all nodes without terrain become nodata.
+/// final_water_depth beside it, eroded_depth, deposited_depth and bed_change of an erodible bed. Negative arrival times and
+/// all nodes without terrain become nodata.
 std::vector<ProductRaster> product_rasters(const Frame& last, const std::string& crs_wkt);
 
-/// Makes final_elevation, where the rasters have it, the bed of the start and, where that follows, its change. The solver's
+/// Adds final_elevation to rasters with a bed_change: the bed of the start, and where it follows, that change. The solver's
 /// own bed is filtered, and has barriers in it: no later run could begin on that.
-void show_ground_at_end(std::vector<ProductRaster>& rasters, const Raster& bed, bool follows);
+void add_ground_at_end(std::vector<ProductRaster>& rasters, const Raster& bed, bool follows);
 
 /// The parameters of a friction that differs in space, as the nodes of its bed have them: mu, xi, ...
 std::vector<ProductRaster> friction_rasters(const Friction& friction, const Raster& bed);

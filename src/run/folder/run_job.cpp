@@ -305,9 +305,9 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     }
     for (const std::string& warning : insitu_warnings(record.insitu)) record.warnings.push_back(warning);
     note_results(record, rasters);
-    add_friction(scene, simulation, rasters);
     const Raster bed = shown_bed(scene, simulation, rasters);
-    show_ground_at_end(rasters, bed, scene.bed_evolves());
+    add_ground_at_end(rasters, bed, scene.bed_evolves());
+    add_friction(scene, simulation, rasters);
     if (scene.output.geotiff && !rasters.empty() && bed.geometry == rasters.front().raster.geometry)
         rasters.push_back(elevation_raster(bed));
     if (scene.output.vtk && scene.wider) write_terrain(run_dir, bed);
@@ -343,8 +343,8 @@ RunRecord carry_out_in_memory(const Scene& scene, Simulation& simulation, RunRec
         run(simulation, plan_of(scene, record.end < record.whole_end), observers, interrupt, progress, nullptr);
     note_simulation(record, scene, simulation);
     note_results(record, rasters);
+    add_ground_at_end(rasters, shown_bed(scene, simulation, rasters), scene.bed_evolves());
     add_friction(scene, simulation, rasters);
-    show_ground_at_end(rasters, shown_bed(scene, simulation, rasters), scene.bed_evolves());
     return record;
 }
 
