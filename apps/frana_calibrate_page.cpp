@@ -24,11 +24,28 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kFewSamples = 50.0;  ///< below, quantiles are guesses
+constexpr double kTogether = 0.5;     ///< a correlation that is worth a sentence
 
 /// Values of a key at all points.
 std::vector<double> values_of(const Calibration& c, std::size_t key) {
     std::vector<double> all;
     for (const auto& u : c.posterior.points()) all.push_back(c.plan.vary[key].distribution.number(u[key]));
+    return all;
+}
+
+/// Two keys, and how far they go together in the posterior.
+struct Pair {
+    std::string first, second;
+    std::optional<double> correlation;
+};
+
+std::vector<Pair> pairs_of(const Calibration& c) {
+    const std::vector<double> w = c.posterior.weights();
+    std::vector<Pair> all;
+    for (std::size_t b = 1; b < c.plan.vary.size(); ++b)
+        for (std::size_t a = 0; a < b; ++a)
+            all.push_back(
+                {c.plan.vary[a].key, c.plan.vary[b].key, correlation_of(values_of(c, a), values_of(c, b), w)});
     return all;
 }
 
@@ -103,10 +120,14 @@ Json record_of(const Calibration& c, const std::vector<std::string>& files) {
         posterior[c.plan.vary[k].key] = {
             {"mean", of.mean}, {"sd", of.sd}, {"q05", of.q05}, {"q50", of.q50}, {"q95", of.q95}};
     }
+    Json pairs = Json::array();
+    for (const Pair& pair : pairs_of(c))
+        pairs.push_back({{"keys", {pair.first, pair.second}}, {"correlation", known(pair.correlation)}});
     json["score"] = score;
     json["evaluations"] = c.posterior.points().size() * c.fits.size();
     json["failed"] = c.failed;
     json["posterior"] = posterior;
+    json["pairs"] = pairs;
     if (c.optimum) json["optimum"] = optimum_json(c);
     json["effective_number"] = effective_number(w);
     json["core_seconds"] = c.seconds;
@@ -193,9 +214,24 @@ std::string optimum_section(const Calibration& c, double best) {
     const std::string noise =
         optimum.noise ? fmt::format("is {:.2g}", *optimum.noise) : "is not known, since its neighbours have no answers";
     return fmt::format(
-        "\nThe optimum was searched from the best point, {} more points of all events: the misfit fell from "
-        "{:.4g} to {:.4g}, where its noise {}. The end: {}.\n",
-        optimum.evaluations, -best, optimum.misfit, noise, optimum.ended);
+               "\nThe optimum was searched from the best point, {} more points of all events: the misfit fell from "
+               "{:.4g} to {:.4g}, where its noise {}. The end: {}.\n",
+               optimum.evaluations, -best, optimum.misfit, noise, optimum.ended) +
+           (optimum.noise.value_or(0.0) > 1.0
+                ? "\nA noise above 1 is much: which of two neighbours has the weight is chance. "
+                  "Give a larger sigma, or more samples.\n"
+                : "");
+}
+
+/// Which keys the surveys tell only one by another.
+std::string pairs_section(const Calibration& c) {
+    std::string text;
+    for (const Pair& pair : pairs_of(c))
+        if (std::abs(pair.correlation.value_or(0.0)) > kTogether)
+            text += fmt::format(
+                "\n`{}` and `{}` go together (correlation {:.2f}): a value of one needs its own of the other.\n",
+                pair.first, pair.second, *pair.correlation);
+    return text;
 }
 
 /// What of the best point's runs no survey can judge.
@@ -246,6 +282,7 @@ std::string calibration_section(const Calibration& c) {
         page += fmt::format("| `{}` | {:.4g} |{} {:.4g} | {:.2g} | {:.4g} | {:.4g} | {:.4g} |\n", c.plan.vary[k].key,
                             values[best], optimum_cell(c, k), of.mean, of.sd, of.q05, of.q50, of.q95);
     }
+    page += pairs_section(c);
     page += optimum_section(c, c.posterior.log_likelihood()[best]);
     page += fmt::format("\n{} points, {} runs, {} failed; the points tell as much as {:.0f} of equal weight.", w.size(),
                         w.size() * c.fits.size(), c.failed, effective);

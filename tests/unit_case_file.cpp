@@ -232,6 +232,9 @@ TEST_CASE("--set overrides any key, and its mistakes are those of --set", "[case
     CHECK(file.count("release") == 2);
     CHECK(file.word("case.title") == "2024");
     CHECK(file.place("grid.cell") == "--set grid.cell");
+    CHECK(CaseFile::parse(least, "case.toml", {"release.0.depth=.5"}).number("release.0.depth") == 0.5);
+    CHECK(CaseFile::parse(least, "case.toml", {"grid.cell=2."}).number("grid.cell") == 2.0);
+    CHECK(CaseFile::parse(least, "case.toml", {"case.title=.5"}).word("case.title") == ".5");
 
     CHECK(problem_of(least, {"grid.cell=-1"}) ==
           "--set grid.cell: found -1; expected a number above 0 [m]; choose a value in this range");

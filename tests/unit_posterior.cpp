@@ -57,6 +57,32 @@ TEST_CASE("Weighted samples have the mean and the spread of a likelihood that is
     }
 }
 
+TEST_CASE("A survey that tells one key only by another is sampled along what it leaves open", "[ensemble]") {
+    // A ridge across the square, fifteen times as long as it is wide: of normal distributions along and across.
+    constexpr double across = 0.01, along = 0.15, shift = 0.05;
+    Posterior posterior(2, 1);
+    for (int round = 0; round < 4; ++round) {
+        const auto points = posterior.next(200);
+        std::vector<double> log_likelihood;
+        for (const auto& u : points) {
+            const double a = (u[0] + u[1] - 1.0) / std::sqrt(2.0), b = (u[0] - u[1]) / std::sqrt(2.0) - shift;
+            log_likelihood.push_back(-0.5 * (a * a / (across * across) + b * b / (along * along)));
+        }
+        posterior.add(points, log_likelihood);
+    }
+    const std::vector<double> w = posterior.weights();
+    const double n = effective_number(w), sd = std::sqrt(0.5 * (across * across + along * along));
+    CHECK(n > 200.0);  // the last round alone; kernels without the keys' correlation leave 50 to 100 of all four
+    const Marginal of = marginal_of(key_of(posterior, 0), w);
+    CHECK(of.mean == Approx(0.5 + shift / std::sqrt(2.0)).margin(3.0 * sd / std::sqrt(n)));
+    CHECK(of.sd == Approx(sd).margin(3.0 * sd / std::sqrt(2.0 * n)));
+    // Of the ridge itself; three standard errors of a correlation of so many samples (1 - r^2) / sqrt(n).
+    const double together = (across * across - along * along) / (across * across + along * along);
+    CHECK(correlation_of(key_of(posterior, 0), key_of(posterior, 1), w).value() ==
+          Approx(together).margin(3.0 * (1.0 - together * together) / std::sqrt(n)));
+    CHECK_FALSE(correlation_of(key_of(posterior, 0), std::vector<double>(w.size(), 1.0), w).has_value());
+}
+
 TEST_CASE("A likelihood at the edge of the prior is not blurred over it", "[ensemble]") {
     // Half of a normal distribution: mean sigma sqrt(2 / pi).
     const Posterior posterior = sampled({0.0}, {0.05}, 200, 3, 2);

@@ -1,5 +1,6 @@
 #include "ensemble/posterior.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
@@ -14,26 +15,26 @@ namespace {
 
 constexpr double kFromPrior = 0.1;  ///< share of a round that is drawn from the prior again: no region is given up
 
-/// A number beyond 0 or 1, mirrored into between.
-double mirrored(double u) {
-    u = std::abs(std::fmod(u, 2.0));
-    return u > 1.0 ? 2.0 - u : u;
+constexpr double kEdge = 1e-12;  ///< the normal distribution has no place for shares of 0 and 1
+
+/// A share of the key's distribution as a number of a normal one.
+double normal_of(double share) {
+    return boost::math::quantile(boost::math::normal(), std::clamp(share, kEdge, 1.0 - kEdge));
 }
 
-/// A Gaussian kernel between mirrors at 0 and 1.
-double kernel(double u, double middle, double width) {
-    constexpr double root_two_pi = 2.5066282746310002;
-    double sum = 0.0;
-    for (const double image : {middle, -middle, 2.0 - middle}) {
-        const double z = (u - image) / width;
-        sum += std::exp(-0.5 * z * z);
-    }
-    return sum / (root_two_pi * width);
+double share_below(double normal) {
+    return std::clamp(boost::math::cdf(boost::math::normal(), normal), kEdge, 1.0 - kEdge);
 }
 
-}  // namespace
-
-namespace {
+/// Of points by their weights, whose sum is 1.
+Eigen::MatrixXd covariance(const std::vector<Eigen::VectorXd>& points, const std::vector<double>& weights) {
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(points.front().size());
+    for (std::size_t i = 0; i < points.size(); ++i) mean += weights[i] * points[i];
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(mean.size(), mean.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+        sum += weights[i] * (points[i] - mean) * (points[i] - mean).transpose();
+    return sum;
+}
 
 /// Weights of likelihoods, flattened by the power `flat`, under the density that the points came from; sum 1, or all 0.
 std::vector<double> weighted(const std::vector<double>& log_likelihood, const std::vector<double>& mixture,
@@ -66,7 +67,8 @@ double flattening(const std::vector<double>& log_likelihood, const std::vector<d
 
 }  // namespace
 
-/// Kernels of the width that suits a normal distribution (Silverman 1986), by key.
+/// Kernels of the width that suits a normal distribution (Silverman 1986). The fewer points tell of the covariance, the less
+/// the keys go together in it (shrunk to its diagonal, Schaefer and Strimmer 2005).
 Posterior::Round Posterior::proposal() const {
     Round round;
     round.begin = points_.size();
@@ -74,14 +76,15 @@ Posterior::Round Posterior::proposal() const {
     const double sum = std::accumulate(w.begin(), w.end(), 0.0);
     if (!(sum > 0.0)) return round;
     round.kernel = w;
-    constexpr double narrowest = 1e-3, widest = 0.25;  // mirrors farther away than three widths do not count
-    const double d = static_cast<double>(keys_),
-                 silverman = std::pow(4.0 / ((d + 2.0) * std::max(1.0, effective_number(w))), 1.0 / (d + 4.0));
-    for (std::size_t k = 0; k < static_cast<std::size_t>(keys_); ++k) {
-        std::vector<double> of_key;
-        for (const auto& point : points_) of_key.push_back(point[k]);
-        round.width.push_back(std::clamp(silverman * marginal_of(of_key, w).sd, narrowest, widest));
-    }
+    constexpr double narrowest = 2e-3;  // of the prior's standard deviation
+    const double d = static_cast<double>(keys_), n = std::max(1.0, effective_number(w)),
+                 silverman = std::pow(4.0 / ((d + 2.0) * n), 1.0 / (d + 4.0)), shrunk = d / (d + n);
+    Eigen::MatrixXd spread = covariance(normals_, w);
+    const Eigen::VectorXd by_key = spread.diagonal();
+    spread *= silverman * silverman * (1.0 - shrunk);
+    spread.diagonal() += silverman * silverman * shrunk * by_key;
+    spread.diagonal().array() += narrowest * narrowest;
+    round.root = spread.llt().matrixL();
     return round;
 }
 
@@ -95,7 +98,6 @@ std::vector<std::vector<double>> Posterior::next(Index count) const {
     }
     std::vector<double> sums(round.kernel.size());
     std::partial_sum(round.kernel.begin(), round.kernel.end(), sums.begin());
-    const boost::math::normal normal;
     std::vector<std::vector<double>> points;
     for (Index i = 0; i < count; ++i) {
         const auto number = static_cast<std::uint64_t>(points_.size()) + static_cast<std::uint64_t>(i);
@@ -104,47 +106,47 @@ std::vector<std::vector<double>> Posterior::next(Index count) const {
         const double at = unit(keys_ + 1) * sums.back();
         const auto chosen = std::min<std::size_t>(
             sums.size() - 1, static_cast<std::size_t>(std::upper_bound(sums.begin(), sums.end(), at) - sums.begin()));
-        std::vector<double> point(static_cast<std::size_t>(keys_));
-        for (Index k = 0; k < keys_; ++k) {
-            const auto key = static_cast<std::size_t>(k);
-            const double u = mirrored(points_[chosen][key] + round.width[key] * boost::math::quantile(normal, unit(k)));
-            point[key] = from_prior ? unit(k) : std::clamp(u, 1e-12, 1.0 - 1e-12);
-        }
-        points.push_back(std::move(point));
+        Eigen::VectorXd normal(keys_);
+        for (Index k = 0; k < keys_; ++k) normal[k] = normal_of(unit(k));
+        if (!from_prior) normal = normals_[chosen] + round.root * normal;
+        std::vector<double>& point = points.emplace_back();
+        for (const double z : normal) point.push_back(share_below(z));
     }
     return points;
 }
 
-double Posterior::density(const Round& round, const std::vector<double>& point) const {
+/// Over the prior's, which is 1 in the unit cube.
+double Posterior::density(const Round& round, const Eigen::VectorXd& normal) const {
     if (round.kernel.empty()) return 1.0;
+    const auto root = round.root.triangularView<Eigen::Lower>();
+    const double of_prior = 0.5 * normal.squaredNorm();
     double sum = 0.0;
-    for (std::size_t j = 0; j < round.kernel.size(); ++j) {
-        double product = round.kernel[j];
-        for (std::size_t k = 0; product > 0.0 && k < point.size(); ++k)
-            product *= kernel(point[k], points_[j][k], round.width[k]);
-        sum += product;
-    }
-    return kFromPrior + (1.0 - kFromPrior) * sum;
+    for (std::size_t j = 0; j < round.kernel.size(); ++j)
+        if (round.kernel[j] > 0.0)
+            sum += round.kernel[j] * std::exp(of_prior - 0.5 * root.solve((normal - normals_[j]).eval()).squaredNorm());
+    return kFromPrior + (1.0 - kFromPrior) * sum / round.root.diagonal().prod();
 }
 
 void Posterior::add(const std::vector<std::vector<double>>& points, const std::vector<double>& log_likelihood) {
     expect(points.size() == log_likelihood.size(), "a likelihood for each point");
     Round round = proposal();
     round.end = round.begin + points.size();
-    for (std::size_t i = 0; i < points_.size(); ++i) mixture_[i] += share_of(round, points_[i]);
+    for (std::size_t i = 0; i < points_.size(); ++i) mixture_[i] += share_of(round, normals_[i]);
     rounds_.push_back(std::move(round));
     points_.insert(points_.end(), points.begin(), points.end());
     log_likelihood_.insert(log_likelihood_.end(), log_likelihood.begin(), log_likelihood.end());
     for (const auto& point : points) {
+        Eigen::VectorXd& normal = normals_.emplace_back(keys_);
+        std::transform(point.begin(), point.end(), normal.begin(), normal_of);
         double sum = 0.0;
-        for (const Round& before : rounds_) sum += share_of(before, point);
+        for (const Round& before : rounds_) sum += share_of(before, normal);
         mixture_.push_back(sum);
     }
 }
 
 /// A round's density at a point, times its number of points.
-double Posterior::share_of(const Round& round, const std::vector<double>& point) const {
-    return static_cast<double>(round.end - round.begin) * density(round, point);
+double Posterior::share_of(const Round& round, const Eigen::VectorXd& normal) const {
+    return static_cast<double>(round.end - round.begin) * density(round, normal);
 }
 
 std::vector<double> Posterior::weights(const std::vector<double>& log_likelihood) const {
@@ -192,6 +194,17 @@ Marginal marginal_of(const std::vector<double>& numbers, const std::vector<doubl
     };
     of.q05 = quantile(0.05), of.q50 = quantile(0.5), of.q95 = quantile(0.95);
     return of;
+}
+
+std::optional<double> correlation_of(const std::vector<double>& a, const std::vector<double>& b,
+                                     const std::vector<double>& weights) {
+    const Marginal of_a = marginal_of(a, weights), of_b = marginal_of(b, weights);
+    const double spread = of_a.sd * of_b.sd;
+    if (!(spread > 0.0)) return std::nullopt;
+    double together = 0.0, sum = 0.0;
+    for (std::size_t k = 0; k < a.size(); ++k)
+        together += weights[k] * (a[k] - of_a.mean) * (b[k] - of_b.mean), sum += weights[k];
+    return together / (sum * spread);
 }
 
 }  // namespace frana

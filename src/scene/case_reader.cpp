@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <sstream>
 
+#include "base/number_text.h"
 #include "scene/toml_value.h"
 
 namespace frana {
@@ -97,7 +99,7 @@ bool takes_text(Kind kind) {
     return kind == Kind::text || kind == Kind::name || kind == Kind::choice || kind == Kind::path;
 }
 
-/// The value of a --set: a TOML value where it is one, otherwise the text itself.
+/// The value of a --set: a TOML value where it is one, a number that TOML would write otherwise (.5, 2.), or the text itself.
 toml::table set_table(const std::string& text, Kind kind) {
     toml::table table;
     try {  // toml++ reports by exception whether a text is TOML; here that is a question, not an error
@@ -106,6 +108,8 @@ toml::table set_table(const std::string& text, Kind kind) {
         table.clear();
     }
     const bool one_value = table.size() == 1;
+    const std::optional<double> number = one_value || takes_text(kind) ? std::nullopt : number_in(text);
+    if (number && std::isfinite(*number)) return toml::table{{"v", *number}};
     if (!one_value || (takes_text(kind) && !table.begin()->second.is_string())) return toml::table{{"v", text}};
     return table;
 }
