@@ -1,207 +1,20 @@
-// What a calibration leaves: calibrate.json, report.md, runs.csv, posterior.csv, posterior.png.
+// What a calibration says to people.
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <nlohmann/json.hpp>
 
-#include "base/atomic_file.h"
-#include "base/error.h"
-#include "base/text_file.h"
-#include "base/version.h"
 #include "ensemble/statistics.h"
 #include "frana_calibrate.h"
-#include "frana_calibrate_kept.h"
+#include "frana_calibrate_numbers.h"
 #include "frana_calibrate_predictions.h"
-#include "run/ensemble/shard_store.h"
-#include "vtk_io/figures/chart_figure.h"
 
 namespace frana {
-namespace fs = std::filesystem;
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr double kFewSamples = 50.0;  ///< below, quantiles are guesses
+constexpr double kAtAnEnd = 2.0;      ///< a density at an end, over the prior's, that is worth a sentence
 constexpr double kTogether = 0.5;     ///< a correlation that is worth a sentence
-
-/// Values of a key at all points.
-std::vector<double> values_of(const Calibration& c, std::size_t key) {
-    std::vector<double> all;
-    for (const auto& u : c.posterior.points()) all.push_back(c.plan.vary[key].distribution.number(u[key]));
-    return all;
-}
-
-/// Two keys, and how far they go together in the posterior.
-struct Pair {
-    std::string first, second;
-    std::optional<double> correlation;
-};
-
-std::vector<Pair> pairs_of(const Calibration& c) {
-    const std::vector<double> w = c.posterior.weights();
-    std::vector<Pair> all;
-    for (std::size_t b = 1; b < c.plan.vary.size(); ++b)
-        for (std::size_t a = 0; a < b; ++a)
-            all.push_back(
-                {c.plan.vary[a].key, c.plan.vary[b].key, correlation_of(values_of(c, a), values_of(c, b), w)});
-    return all;
-}
-
-/// A number of a record, null where there is none.
-Json known(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
-
-Json known(const std::optional<double>& number) { return number ? known(*number) : Json(nullptr); }
-
-bool is_raster(Evidence evidence) { return evidence == Evidence::deposit || evidence == Evidence::bed_change; }
-
-/// How far the run is off in all that counts of an event.
-Json misfits_json(const SurveyedEvent& event, const EventScores& scores) {
-    Json all = Json::object();
-    for (const Evidence evidence : event.objective) {
-        const auto& misfit = scores.misfits[static_cast<std::size_t>(evidence)];
-        all[kind_of(evidence).word] = {{"rms", misfit ? Json(misfit->rms) : Json(nullptr)},
-                                       {"sigma", event.errors.of(evidence)},
-                                       {"number", misfit ? Json(misfit->number) : Json(nullptr)}};
-        if (is_raster(evidence))
-            all[kind_of(evidence).word]["unsurveyed_m3"] = misfit ? Json(misfit->unsurveyed) : Json(nullptr);
-    }
-    return all;
-}
-
-Json events_json(const Calibration& c) {
-    Json all = Json::array();
-    const std::size_t best = c.posterior.best();
-    const auto rows = predictions(c);
-    for (std::size_t e = 0; e < c.fits.size(); ++e) {
-        const EventScores& scores = c.fits[e].scores[best];
-        Json event = {{"name", c.plan.events[e].name},
-                      {"iou", known(scores.iou)},
-                      {"boundary", known(scores.boundary)},
-                      {"boundary_by_prior", known(rows[e].prior.mean)},
-                      {"boundary_median_of_prior", known(rows[e].prior.median)},
-                      {"boundary_by_own", known(rows[e].own.mean)},
-                      {"boundary_by_all", known(rows[e].all.mean)}};
-        if (c.fits.size() > 1) event["boundary_by_others"] = known(rows[e].others.mean);
-        for (std::size_t f = 0; c.fits.size() > 1 && f < c.fits.size(); ++f)
-            event["boundary_by_one"].push_back(known(rows[e].by_one[f].mean));
-        event["misfits"] = misfits_json(c.plan.events[e], scores);
-        all.push_back(event);
-    }
-    return all;
-}
-
-Json optimum_json(const Calibration& c) {
-    const Optimum& optimum = *c.optimum;
-    Json json = {{"values", Json::object()},           {"score", -optimum.misfit}, {"noise", known(optimum.noise)},
-                 {"evaluations", optimum.evaluations}, {"ended", optimum.ended},   {"events", Json::array()}};
-    for (std::size_t k = 0; k < c.plan.vary.size(); ++k)
-        json["values"][c.plan.vary[k].key] = c.plan.vary[k].distribution.number(optimum.point[k]);
-    for (std::size_t e = 0; e < c.plan.events.size(); ++e)
-        json["events"].push_back({{"name", c.plan.events[e].name},
-                                  {"iou", known(optimum.scores[e].iou)},
-                                  {"boundary", known(optimum.scores[e].boundary)},
-                                  {"misfits", misfits_json(c.plan.events[e], optimum.scores[e])}});
-    return json;
-}
-
-Json record_of(const Calibration& c, const std::vector<std::string>& files) {
-    const std::vector<double> w = c.posterior.weights();
-    const std::size_t best = c.posterior.best();
-    double score = 0.0;
-    for (std::size_t e = 0; e < c.fits.size(); ++e) score += c.plan.events[e].weight * c.fits[e].log_likelihood[best];
-    Json json = {{"frana", FRANA_VERSION}, {"file", c.plan.file.filename().string()}, {"mark", mark_of(c.plan)}};
-    Json posterior = Json::object();
-    for (std::size_t k = 0; k < c.plan.vary.size(); ++k) {
-        const std::vector<double> values = values_of(c, k);
-        json["best"][c.plan.vary[k].key] = values[best];
-        const Marginal of = marginal_of(values, w);
-        posterior[c.plan.vary[k].key] = {
-            {"mean", of.mean}, {"sd", of.sd}, {"q05", of.q05}, {"q50", of.q50}, {"q95", of.q95}};
-    }
-    Json pairs = Json::array();
-    for (const Pair& pair : pairs_of(c))
-        pairs.push_back({{"keys", {pair.first, pair.second}}, {"correlation", known(pair.correlation)}});
-    json["score"] = score;
-    json["evaluations"] = c.posterior.points().size() * c.fits.size();
-    json["failed"] = c.failed;
-    json["posterior"] = posterior;
-    json["pairs"] = pairs;
-    if (c.optimum) json["optimum"] = optimum_json(c);
-    json["effective_number"] = effective_number(w);
-    json["core_seconds"] = c.seconds;
-    json["events"] = events_json(c);
-    json["files"] = files;
-    return json;
-}
-
-void write_tables(const fs::path& dir, const Calibration& c) {
-    TextFile runs(dir / "runs.csv");
-    runs.put("sample,weight");
-    for (const Vary& vary : c.plan.vary) runs.put(",{}", vary.key);
-    for (const SurveyedEvent& event : c.plan.events) {
-        runs.put(",{},{}", csv_field(event.name + ": iou"), csv_field(event.name + ": boundary_m"));
-        for (const Evidence evidence : event.objective)
-            runs.put(",{}", csv_field(fmt::format("{}: {}_rms", event.name, kind_of(evidence).word)));
-    }
-    runs.put("\n");
-    const std::vector<double> w = c.posterior.weights();
-    for (std::size_t i = 0; i < w.size(); ++i) {
-        runs.put("{},{}", i, w[i]);
-        for (std::size_t k = 0; k < c.plan.vary.size(); ++k)
-            runs.put(",{}", c.plan.vary[k].distribution.number(c.posterior.points()[i][k]));
-        for (std::size_t e = 0; e < c.fits.size(); ++e) {
-            const EventScores& scores = c.fits[e].scores[i];
-            runs.put(",{},{}", text_of_known(scores.iou), text_of_known(scores.boundary));
-            for (const Evidence evidence : c.plan.events[e].objective) {
-                const auto& misfit = scores.misfits[static_cast<std::size_t>(evidence)];
-                runs.put(",{}", misfit ? fmt::format("{}", misfit->rms) : "");
-            }
-        }
-        runs.put("\n");
-    }
-    runs.commit();
-    TextFile drawn(dir / "posterior.csv");
-    for (std::size_t k = 0; k < c.plan.vary.size(); ++k) drawn.put("{}{}", k == 0 ? "" : ",", c.plan.vary[k].key);
-    drawn.put("\n");
-    for (const std::size_t i : c.posterior.drawn(c.plan.draws)) {
-        for (std::size_t k = 0; k < c.plan.vary.size(); ++k)
-            drawn.put("{}{}", k == 0 ? "" : ",", c.plan.vary[k].distribution.number(c.posterior.points()[i][k]));
-        drawn.put("\n");
-    }
-    drawn.commit();
-}
-
-/// How much more likely a value is than before the survey, over its place in the prior.
-Curve density_of(const Calibration& c, std::size_t key) {
-    constexpr std::size_t bins = 20;
-    std::vector<double> weight(bins, 0.0);
-    const std::vector<double> w = c.posterior.weights();
-    for (std::size_t i = 0; i < w.size(); ++i)
-        weight[std::min(bins - 1, static_cast<std::size_t>(c.posterior.points()[i][key] * bins))] += w[i];
-    Curve curve;
-    curve.name = c.plan.vary[key].key;
-    for (std::size_t b = 0; b < bins; ++b)
-        for (const std::size_t edge : {b, b + 1}) {
-            curve.x.push_back(static_cast<double>(edge) / bins);
-            curve.y.push_back(weight[b] * bins);
-        }
-    return curve;
-}
-
-bool draw(const fs::path& dir, const Calibration& c) {
-    ChartFigure figure;
-    figure.title = "What the surveys tell: " + c.plan.file.filename().string();
-    figure.x_label = "share of the key's distribution below [1]";
-    figure.x_range = {0.0, 1.0};
-    constexpr std::size_t at_most = 4;  // panels that can still be read
-    for (std::size_t k = 0; k < std::min(at_most, c.plan.vary.size()); ++k)
-        figure.panels.push_back(
-            {"over the prior [1]", {density_of(c, k), {"before", {0.0, 1.0}, {1.0, 1.0}}}, false, {}, 1.0});
-    std::string why_not;
-    return render_chart(figure, dir / "posterior.png", why_not);
-}
 
 std::string optimum_cell(const Calibration& c, std::size_t key) {
     return c.optimum ? fmt::format(" {:.4g} |", c.plan.vary[key].distribution.number(c.optimum->point[key])) : "";
@@ -226,11 +39,30 @@ std::string optimum_section(const Calibration& c, double best) {
 /// Which keys the surveys tell only one by another.
 std::string pairs_section(const Calibration& c) {
     std::string text;
-    for (const Pair& pair : pairs_of(c))
+    for (const KeyPair& pair : pairs_of(c))
         if (std::abs(pair.correlation.value_or(0.0)) > kTogether)
             text += fmt::format(
                 "\n`{}` and `{}` go together (correlation {:.2f}): a value of one needs its own of the other.\n",
                 pair.first, pair.second, *pair.correlation);
+    return text;
+}
+
+/// Keys whose likeliest values lie at an end of what was thought possible: values beyond may be likelier still.
+std::string ends_section(const Calibration& c) {
+    std::string text;
+    for (std::size_t k = 0; k < c.plan.vary.size(); ++k) {
+        const std::vector<double> density = density_of(c, k);
+        const double most = *std::max_element(density.begin(), density.end());
+        if (most < kAtAnEnd) continue;
+        for (const bool upper : {false, true})
+            if ((upper ? density.back() : density.front()) == most)
+                text += fmt::format(
+                    "\n`{}` is likeliest at the {} end of its distribution, {:.4g}: values beyond it may be "
+                    "likelier still. "
+                    "Widen it, unless they are impossible.\n",
+                    c.plan.vary[k].key, upper ? "upper" : "lower",
+                    c.plan.vary[k].distribution.number(upper ? 1.0 - 1e-12 : 1e-12));
+    }
     return text;
 }
 
@@ -282,31 +114,12 @@ std::string calibration_section(const Calibration& c) {
         page += fmt::format("| `{}` | {:.4g} |{} {:.4g} | {:.2g} | {:.4g} | {:.4g} | {:.4g} |\n", c.plan.vary[k].key,
                             values[best], optimum_cell(c, k), of.mean, of.sd, of.q05, of.q50, of.q95);
     }
-    page += pairs_section(c);
+    page += pairs_section(c) + ends_section(c);
     page += optimum_section(c, c.posterior.log_likelihood()[best]);
     page += fmt::format("\n{} points, {} runs, {} failed; the points tell as much as {:.0f} of equal weight.", w.size(),
                         w.size() * c.fits.size(), c.failed, effective);
     if (effective < kFewSamples) page += " Fewer than 50 are few: give more samples or rounds, or a larger sigma.";
     return page + "\n\n" + misfits_section(c, best) + predictions_section(c);
-}
-
-std::vector<std::string> write_calibration(const fs::path& dir, const Calibration& c) {
-    const std::vector<double> w = c.posterior.weights();
-    if (!(effective_number(w) > 0.0))
-        throw UserError(
-            fmt::format("{}: found no run that comes near a survey; expected one or more; widen the ranges, or raise "
-                        "calibrate.sigma",
-                        c.plan.file.string()));
-    std::vector<std::string> files = {"runs.csv", "posterior.csv", "report.md", "calibrate.json"};
-    write_tables(dir, c);
-    if (draw(dir, c)) files.emplace_back("posterior.png");
-    write_text(
-        dir / "report.md",
-        fmt::format("# Calibration by {}\n\n{}\n`posterior.csv` is a table of samples for `frana ensemble` (method "
-                    "\"table\").\n",
-                    c.plan.file.filename().string(), calibration_section(c)));
-    write_text(dir / "calibrate.json", record_of(c, files).dump(2) + "\n");
-    return files;
 }
 
 }  // namespace frana
