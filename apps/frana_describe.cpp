@@ -97,8 +97,9 @@ Json json_of(const Parameter& parameter) {
     if (parameter.fallback) entry["default"] = json_of(parameter.kind, *parameter.fallback);
     if (!parameter.absent.empty()) entry["absent"] = parameter.absent;
     for (const OtherDefault& other : parameter.otherwise)
-        entry["otherwise"].push_back(
-            {{"when", other.when}, {"is", other.is}, {"default", json_of(parameter.kind, other.value)}});
+        entry["otherwise"].push_back({{"when", other.when},
+                                      {"is", json_of(Kind::choice, other.is)},
+                                      {"default", json_of(parameter.kind, other.value)}});
     if (!parameter.switch_key.empty()) entry["switch"] = parameter.switch_key;
     if (!parameter.used_by.empty()) entry["used_by"] = parameter.used_by;
     if (!parameter.required_by.empty()) entry["required_by"] = parameter.required_by;

@@ -53,6 +53,7 @@ void complete(Sets& sets) {
     if (any("water.profile_factor")) give(sets, "water.viscous", "clear"), give(sets, "water.model", "free");
     if (any("water.") && sets["water.model"] == "free") give(sets, "material.structure.law", "drucker_prager");
     if (any("material.bed.mu")) give(sets, "material.bed.law", "coulomb");
+    if (any("terrain.unrolled")) give(sets, "material.structure.law", "drucker_prager");
     if (any("material.structure.")) give(sets, "material.structure.law", "drucker_prager");
     const auto table = sets.find("material.bed.table");
     const bool by_table = table != sets.end() && table->second != "none";

@@ -135,7 +135,12 @@ TEST_CASE("What does not fit a structure is refused in one sentence", "[structur
     CHECK(has(problem_of_structure(structure + "onset = 0.1\n"), "material.structure.onset: found, but"));
     CHECK(has(problem_of_structure(structure + "[material.rheology]\nlaw = \"newtonian\"\nviscosity = 1\n"),
               "material.rheology.law: found \"newtonian\" with material.structure.law"));
-    CHECK(has(problem_of_structure(structure, "curvature = \"full\"\n"), "terrain.curvature: found \"full\" with"));
+    CHECK(
+        has(problem_of_structure(structure, "curvature = \"inertia\"\n"), "terrain.curvature: found \"inertia\" with"));
+    CHECK(has(problem_of_structure(structure, "unrolled = true\ncurvature = \"full\"\n"),
+              "terrain.unrolled: found true with terrain.curvature = \"full\""));
+    CHECK(scene_of(structure).curvature == Curvature::full);
+    CHECK(scene_of(structure, "unrolled = true\n").curvature == Curvature::none);
     CHECK(has(problem_of_structure(structure + "[scheme]\nshape = \"cubic\"\n"), "scheme.shape: found \"cubic\" with"));
     CHECK(has(problem_of_structure("", "unrolled = true\n"), "terrain.unrolled: found true"));
     CHECK(has(problem_of_structure(structure + "[[stage]]\nmodel = \"solid_flow\"\n"), "found a stage with"));

@@ -114,7 +114,7 @@ namespace {
 /// What make_bed_geometry needs, kept: grains may come long after the scene is gone.
 std::function<BedGeometry(const TileGrid&)> bed_under(const Scene& scene) {
     Scene of;
-    of.bed = scene.bed, of.scheme = scene.scheme, of.sides = scene.sides, of.curvature = Curvature::none;
+    of.bed = scene.bed, of.scheme = scene.scheme, of.sides = scene.sides, of.curvature = scene.curvature;
     return [of = std::make_shared<const Scene>(std::move(of))](const TileGrid& grid) {
         return make_bed_geometry(*of, grid);
     };
@@ -135,7 +135,7 @@ StructuredScene structured_scene(const Scene& scene) {
     s.bed_law = scene.bed_law;
     s.hydrostatic = of.hydrostatic;
     s.scheme = scene.scheme;
-    if (!of.unrolled) s.bed = bed_under(scene);
+    if (!of.unrolled) s.bed = bed_under(scene), s.curved = scene.curvature != Curvature::none;
     s.cfl = of.cfl;
     if (scene.sides == Sides::wall) add_walls(s.grid, s.obstacles);
     for (const Barrier& barrier : scene.barriers) s.obstacles.push_back(box_of(barrier));

@@ -77,7 +77,7 @@ const Value* CaseFile::find(const std::string& key) const {
     const Parameter* parameter = find_parameter(key);
     expect(parameter != nullptr, key.c_str());
     for (const OtherDefault& other : parameter->otherwise)
-        if (has(other.when) && word(other.when) == other.is) return &other.value;
+        if (has(other.when) && value(other.when) == other.is) return &other.value;
     return parameter->fallback ? &*parameter->fallback : nullptr;
 }
 

@@ -80,10 +80,14 @@ void add_structure(std::vector<Combination>& table) {
                      {structure},
                      "expected \"none\": the structure is what resists inside the mass",
                      "remove one of them"});
-    table.push_back({is_not("terrain.curvature", {"none"}),
+    table.push_back({{"terrain.unrolled", Are::on},
+                     {is("terrain.curvature", {"full"})},
+                     "expected \"none\" there: coordinates along the ground know no bend",
+                     "remove one of them"});
+    table.push_back({is("terrain.curvature", {"inertia"}),
                      {structure},
-                     "expected \"none\": a solid keeps its length on the map over a bend",
-                     "remove it"});
+                     "expected \"full\" or \"none\": grains press on a bend with all of their weight there",
+                     "choose one of them"});
     table.push_back({is_not("terrain.model", {"steep"}), {structure}, "expected \"steep\"", "remove it"});
     table.push_back({is_not("scheme.preset", {"default"}), {structure}, "expected \"default\"", "remove it"});
     table.push_back({is_not("scheme.shape", {"quadratic"}), {structure}, "expected \"quadratic\"", "remove it"});

@@ -30,7 +30,7 @@ std::string default_text(const Parameter& parameter) {
     else if (!parameter.absent.empty())
         text = parameter.absent;
     for (const OtherDefault& other : parameter.otherwise)
-        text += fmt::format("; {} with {} = \"{}\"", shown(parameter, other.value), other.when, other.is);
+        text += fmt::format("; {} with {} = {}", shown(parameter, other.value), other.when, toml_text(other.is));
     return text;
 }
 

@@ -92,7 +92,7 @@ inline Parameter instead(Parameter parameter, const char* other) {
 
 /// Another default under the preset "paper", the choices of Fois et al. (2024).
 inline Parameter paper(Parameter parameter, Value value) {
-    parameter.otherwise.push_back({"scheme.preset", "paper", std::move(value)});
+    parameter.otherwise.push_back({"scheme.preset", text("paper"), std::move(value)});
     return parameter;
 }
 

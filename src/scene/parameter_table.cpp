@@ -31,11 +31,12 @@ void add_terrain(Table& table) {
                                  "steep: exact on any slope; shallow: gentle slopes (Fois et al. 2024); linearised: "
                                  "Savage and Hutter's theory, for comparison with its solutions"),
                           text("shallow")));
-    Parameter curvature = choice("terrain.curvature", {"full", "inertia", "none"}, "full",
-                                 "bed curvature: full; inertia: in the acceleration, not in the friction; none");
-    curvature.otherwise.push_back({"terrain.model", "shallow", text("none")});
-    for (const char* law : {"drucker_prager", "mohr_coulomb"})
-        curvature.otherwise.push_back({"material.structure.law", law, text("none")});
+    Parameter curvature = choice(
+        "terrain.curvature", {"full", "inertia", "none"}, "full",
+        "bed curvature: full; inertia: in the acceleration, not in the friction; none. What holds together keeps its "
+        "length on the map, and only its grains feel a bend");
+    curvature.otherwise.push_back({"terrain.model", text("shallow"), text("none")});
+    curvature.otherwise.push_back({"terrain.unrolled", true, text("none")});
     table.push_back(curvature);
     table.push_back(
         flag("terrain.unrolled", false,
@@ -210,7 +211,7 @@ void add_zones(Table& table) {
 
 void add_material(Table& table) {
     Parameter density = number("material.density", "kg/m^3", positive, 1000.0, "density of the mass");
-    for (const MassKind& mass : mass_kinds()) density.otherwise.push_back({"case.kind", mass.name, mass.density});
+    for (const MassKind& mass : mass_kinds()) density.otherwise.push_back({"case.kind", text(mass.name), mass.density});
     table.push_back(density);
     add_law<BedLaw>(table, "material.bed", "friction between the mass and its bed", Kind::number_or_path);
     add_friction_table(table);

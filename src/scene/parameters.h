@@ -37,7 +37,7 @@ bool names_files(Kind kind);
 /// Another default that holds when the key `when` has the value `is`.
 struct OtherDefault {
     std::string when;
-    std::string is;
+    Value is;  ///< a word or a flag
     Value value;
 };
 

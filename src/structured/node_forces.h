@@ -120,30 +120,71 @@ struct GrainsOf {
            FlatOf<Double4>{left - right, below - above};
 }
 
-/// What drives grains. As in the depth-averaged flow: the slope of the free surface instead of the ground's, for their
-/// share s of the mass; the rest of their earth pressure, K - 1, along with it; what either lacks where s or K changes,
-/// -g_z h / 2 div(s K); and the artificial viscosity at bores. Besides the share of their weight that the whole node is
-/// given. `bears`: share of the weight on the bed. [m/s^2]
+/// What drives grains on the map [m/s^2].
 template <class Real>
-[[gnu::always_inline]] inline FlatOf<Real> grain_drive(const StructuredBody& body, Index k,
-                                                       const GroundOf<Real>& ground, double bears) {
+struct DriveOf {
+    FlatOf<Real> drive;   ///< of the free surface, less the weight that the node was given
+    FlatOf<Real> thrust;  ///< of the free surface, less that of a uniform depth
+    Real weight;          ///< on the bed, over that at rest [1]
+};
+
+/// By the grid update of the depth-averaged flow. With kCurvature the bed's own vertical acceleration along the velocity `v`
+/// adds to gravity.
+template <Curvature kCurvature, class Real>
+[[gnu::always_inline]] inline DriveOf<Real> drive_on_map(const Flow& flow, Index k, const GroundOf<Real>& ground,
+                                                         const FlatOf<Real>& surface, const FlatOf<Real>& v) {
+    const SteepBed<Real, kCurvature, false> bed(flow, k);
+    const Real one = Real{} + 1.0, cosine = 1.0 / sqrt(1.0 + bed.bx * bed.bx + bed.by * bed.by);
+    const Drive<Real> slope = bed.drive(surface.x, surface.y, one), even = bed.drive(bed.bx, bed.by, one);
+    const Real high =
+        read<Real>(&flow.nodes.depth[k]) + flow.cell * (abs(surface.x - bed.bx) + abs(surface.y - bed.by));
+    const Drive<Real> all = bed.driving(slope, flow.gravity, high, v.x, v.y, cosine);
+    const Real weight = bed.gravity(flow.gravity, v.x, v.y);
+    return {{all.x + ground.plane_gravity.x, all.y + ground.plane_gravity.y},
+            {weight * (slope.x - even.x), weight * (slope.y - even.y)},
+            1.0 / flow.gravity * weight};
+}
+
+/// What grains add to a node's motion [m/s^2], and the weight of the node on the bed, over that at rest [1].
+template <class Real>
+struct GrainPushOf {
+    FlatOf<Real> push;
+    Real weight;
+};
+
+/// As in the depth-averaged flow: the slope of the free surface instead of the ground's, for their share s of the mass; the
+/// rest of their earth pressure, K - 1, along with it; what either lacks where s or K changes, -g_z h / 2 div(s K); and the
+/// artificial viscosity at bores. Besides the share of their weight that the whole node is given. `bears`: share of the
+/// weight on the bed. `v`: velocity over a bend of the bed, which only grains feel.
+template <class Real>
+[[gnu::always_inline]] inline GrainPushOf<Real> grain_push(const StructuredBody& body, Index k,
+                                                           const GroundOf<Real>& ground, double bears,
+                                                           const FlatOf<Real>& v) {
     const Flow& flow = body.flow;
     const GrainsOf<Real> grains = grains_at(body, k, Real{});
     const FlatOf<Real> surface = surface_at(flow, k, Real{});
-    // Of the free surface less the weight that the node was given; of the surface less that of a uniform depth.
-    FlatOf<Real> drive = ground.across * surface, thrust = drive;
-    if (body.mapped) {
-        const SteepBed<Real, Curvature::none, false> bed(flow, k);
-        const Real one = Real{} + 1.0, g = Real{} + flow.gravity;
-        const Drive<Real> all = bed.drive(surface.x, surface.y, one), even = bed.drive(bed.bx, bed.by, one);
-        drive = {g * all.x + ground.plane_gravity.x, g * all.y + ground.plane_gravity.y};
-        thrust = {g * (all.x - even.x), g * (all.y - even.y)};
-    }
-    const Real half = 0.25 / flow.cell * read<Real>(&flow.nodes.depth[k]) * ground.across, s = grains.share;
+    const FlatOf<Real> in_plane = ground.across * surface;
+    DriveOf<Real> by{in_plane, in_plane, Real{} + 1.0};
+    if (body.mapped)
+        by = body.curved ? drive_on_map<Curvature::full>(flow, k, ground, surface, v)
+                         : drive_on_map<Curvature::none>(flow, k, ground, surface, v);
+    const Real half = 0.25 / flow.cell * read<Real>(&flow.nodes.depth[k]) * ground.across * by.weight, s = grains.share;
     const Real xx = grains.k.xx - s, yy = grains.k.yy - s, xy = grains.k.xy;
-    const FlatOf<Real> beyond{xx * thrust.x + xy * thrust.y + half * grains.change.x,
-                              xy * thrust.x + yy * thrust.y + half * grains.change.y};
-    return (Real{} - bears) * (s * drive + beyond) + s * viscous_acceleration(flow, k, Real{});
+    const FlatOf<Real> beyond{xx * by.thrust.x + xy * by.thrust.y + half * grains.change.x,
+                              xy * by.thrust.x + yy * by.thrust.y + half * grains.change.y};
+    return {(Real{} - bears) * (s * by.drive + beyond) + s * viscous_acceleration(flow, k, Real{}),
+            1.0 + s * (by.weight - 1.0)};
+}
+
+/// Velocity in the middle of a step, driven and braked by Coulomb friction: it makes what a bend does second order.
+template <class Real, class Law>
+[[gnu::always_inline]] inline FlatOf<Real> midway(const Law& law, const GroundOf<Real>& ground, Real across,
+                                                  const FlatOf<Real>& before, const FlatOf<Real>& acceleration,
+                                                  double dt) {
+    const FlatOf<Real> v = before + (Real{} + 0.5 * dt) * acceleration;
+    const Real steep = sqrt(1.0 + ground.slope.dot(ground.slope)), speed = sqrt(ground.along(v, v));
+    const Real lost = 0.5 * dt * law.friction_at_rest() * across * steep;
+    return select(speed > 0.0, max(Real{}, 1.0 - lost / max(speed, Real{} + 1e-300)), Real{}) * v;
 }
 
 /// A bed law's friction over a step that would change `before` to `driven` (law/bed/node_friction.h); `across`: gravity

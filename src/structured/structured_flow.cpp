@@ -44,7 +44,8 @@ StructuredBody::StructuredBody(const StructuredScene& scene)
       density(scene.density),
       share(scene.share),
       gravity(scene.gravity),
-      mapped(static_cast<bool>(scene.bed)) {}
+      mapped(static_cast<bool>(scene.bed)),
+      curved(scene.bed && scene.curved) {}
 
 StructuredFlow::StructuredFlow(const StructuredScene& scene)
     : body_(scene),

@@ -51,7 +51,8 @@ struct StructuredScene {
     /// The bed under the grains' surface, on the map, asked for when there are grains. None: a plane that the columns'
     /// coordinates lie in, and gravity along it by the ground.
     std::function<BedGeometry(const TileGrid&)> bed;
-    Scheme scheme;  ///< of the grains' surface and of splitting them
+    bool curved = false;  ///< that bed bends, and grains feel it
+    Scheme scheme;        ///< of the grains' surface and of splitting them
     BedLaw bed_law;
     double confined = 0.0;  ///< share of the volume that is water within the structure [1]
     double cfl = 0.4;       ///< fraction of a cell that sound and flow may pass in a step [1]
@@ -154,6 +155,7 @@ struct StructuredBody {
     bool grains = false;     ///< some column is broken or has grains beside its structure
     bool has_exits = false;  ///< some node that was asked for has no ground
     bool mapped = false;     ///< coordinates are on the map, and flow has the bed; otherwise they lie in its plane
+    bool curved = false;     ///< there, grains feel how the bed bends
 };
 
 /// How long forces act in a step, and how long columns then drift [s]. With grains velocities stand half a step behind the

@@ -110,6 +110,18 @@ template <class Real>
     return mass / (body.density * body.flow.area * open);
 }
 
+/// What grains do at a node whose weight acts already. Over a bend that is by the velocity in the middle of the step.
+template <class Real, class Law>
+[[gnu::always_inline]] inline GrainPushOf<Real> pushed(const NodeStep<Law>& step, Index k, const GroundOf<Real>& ground,
+                                                       const DrivenOf<Real>& node, double bears) {
+    const GrainPushOf<Real> at_start = grain_push(step.body, k, ground, bears, node.before);
+    if (!step.body.curved) return at_start;
+    const double dt = step.times.velocity_dt;
+    const FlatOf<Real> all = (Real{} + 1.0 / dt) * (node.driven - node.before) + at_start.push;
+    return grain_push(step.body, k, ground, bears,
+                      midway(step.law, ground, node.across * at_start.weight, node.before, all, dt));
+}
+
 /// A node without water, or four.
 template <class Real, class Law>
 [[gnu::always_inline]] inline void move_dry(NodeStep<Law>& step, Index k) {
@@ -123,8 +135,10 @@ template <class Real, class Law>
     TallyOf<Real>& tally = step.of(Real{});
     tally.weight += mass * weight;
     if (body.grains) {
-        const FlatOf<Real> thrust = dt * grain_drive(body, k, ground, 1.0);
+        const GrainPushOf<Real> grains = pushed(step, k, ground, node, 1.0);
+        const FlatOf<Real> thrust = dt * grains.push;
         node.driven += thrust, tally.pressure += mass * thrust;
+        node.across *= grains.weight;
     }
     finish(step, k, ground, node);
 }
@@ -147,8 +161,9 @@ void move_wet(NodeStep<Law>& step, Index k) {
     DrivenOf<double> node{met.mass, (1.0 - met.support) * ground.across, met.depth, before, before + weight, met.depth};
     impulse.weight += met.mass * vec(weight);
     if (body.grains) {
-        const FlatOf<double> thrust = dt * grain_drive(body, k, ground, 1.0 - met.support);
-        node.driven += thrust;
+        const GrainPushOf<double> grains = pushed(step, k, ground, node, 1.0 - met.support);
+        const FlatOf<double> thrust = dt * grains.push;
+        node.driven += thrust, node.across *= grains.weight;
         impulse.pressure += met.mass * vec(thrust);
     }
     if (has_water(body, k)) {  // drag knows what friction holds, and friction then what drag does
