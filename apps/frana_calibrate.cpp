@@ -115,6 +115,7 @@ Calibration calibrate(const CalibrateOptions& options, const CalibrationPlan& pl
         if (!found.optimum) throw cut_off(options.out);
     }
     forget_prediction(options.out);
+    fs::remove(options.out / "calibrate.json");  // the record of another plan would take these files for its own
     found.files = write_calibration(options.out, found);
     return found;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "ensemble/statistics.h"
 #include "frana_calibrate.h"
@@ -12,9 +13,10 @@
 namespace frana {
 namespace {
 
-constexpr double kFewSamples = 50.0;  ///< below, quantiles are guesses
-constexpr double kAtAnEnd = 2.0;      ///< a density at an end, over the prior's, that is worth a sentence
-constexpr double kTogether = 0.5;     ///< a correlation that is worth a sentence
+constexpr double kFewSamples = 50.0;   ///< below, quantiles are guesses
+constexpr double kFewForAnEnd = 20.0;  ///< points of equal weight, of which a twentieth of a range has one
+constexpr double kAtAnEnd = 2.0;       ///< a density at an end, over the prior's, that is worth a sentence
+constexpr double kTogether = 0.5;      ///< a correlation that is worth a sentence
 
 std::string optimum_cell(const Calibration& c, std::size_t key) {
     return c.optimum ? fmt::format(" {:.4g} |", c.plan.vary[key].distribution.number(c.optimum->point[key])) : "";
@@ -36,32 +38,35 @@ std::string optimum_section(const Calibration& c, double best) {
                 : "");
 }
 
-/// Which keys the surveys tell only one by another.
-std::string pairs_section(const Calibration& c) {
+/// Which keys the surveys tell only one by another. A correlation of few points is chance: of n, 1 / sqrt(n) is its error.
+std::string pairs_section(const Calibration& c, double effective) {
+    constexpr double errors = 2.5;
     std::string text;
     for (const KeyPair& pair : pairs_of(c))
-        if (std::abs(pair.correlation.value_or(0.0)) > kTogether)
+        if (std::abs(pair.correlation.value_or(0.0)) > std::max(kTogether, errors / std::sqrt(effective)))
             text += fmt::format(
-                "\n`{}` and `{}` go together (correlation {:.2f}): a value of one needs its own of the other.\n",
+                "\n`{}` and `{}` go together (correlation {:.2f}). Take both of one row of `posterior.csv`, and "
+                "not the mean of each.\n",
                 pair.first, pair.second, *pair.correlation);
     return text;
 }
 
-/// Keys whose likeliest values lie at an end of what was thought possible: values beyond may be likelier still.
-std::string ends_section(const Calibration& c) {
+/// Keys whose range is favoured most at one of its ends: values beyond may be likelier still.
+std::string ends_section(const Calibration& c, double effective) {
+    if (effective < kFewForAnEnd) return "";
     std::string text;
     for (std::size_t k = 0; k < c.plan.vary.size(); ++k) {
         const std::vector<double> density = density_of(c, k);
+        const Distribution& prior = c.plan.vary[k].distribution;
         const double most = *std::max_element(density.begin(), density.end());
         if (most < kAtAnEnd) continue;
-        for (const bool upper : {false, true})
-            if ((upper ? density.back() : density.front()) == most)
+        for (const auto& [upper, end, at] :
+             {std::tuple{false, prior.low, density.front()}, std::tuple{true, prior.high, density.back()}})
+            if (std::isfinite(end) && at == most)
                 text += fmt::format(
-                    "\n`{}` is likeliest at the {} end of its distribution, {:.4g}: values beyond it may be "
-                    "likelier still. "
-                    "Widen it, unless they are impossible.\n",
-                    c.plan.vary[k].key, upper ? "upper" : "lower",
-                    c.plan.vary[k].distribution.number(upper ? 1.0 - 1e-12 : 1e-12));
+                    "\nThe surveys favour `{}` most at the {} end of its range, {:.4g}. Values beyond may do "
+                    "better. Widen the range, unless they are impossible.\n",
+                    c.plan.vary[k].key, upper ? "upper" : "lower", end);
     }
     return text;
 }
@@ -114,10 +119,11 @@ std::string calibration_section(const Calibration& c) {
         page += fmt::format("| `{}` | {:.4g} |{} {:.4g} | {:.2g} | {:.4g} | {:.4g} | {:.4g} |\n", c.plan.vary[k].key,
                             values[best], optimum_cell(c, k), of.mean, of.sd, of.q05, of.q50, of.q95);
     }
-    page += pairs_section(c) + ends_section(c);
+    page += pairs_section(c, effective) + ends_section(c, effective);
     page += optimum_section(c, c.posterior.log_likelihood()[best]);
     page += fmt::format("\n{} points, {} runs, {} failed; the points tell as much as {:.0f} of equal weight.", w.size(),
                         w.size() * c.fits.size(), c.failed, effective);
+    if (c.failed > 0) page += " Where one failed, the surveys have no say: its values count as if they were excluded.";
     if (effective < kFewSamples) page += " Fewer than 50 are few: give more samples or rounds, or a larger sigma.";
     return page + "\n\n" + misfits_section(c, best) + predictions_section(c);
 }

@@ -34,8 +34,8 @@ int join(const EnsembleOptions& options, const EnsembleRun& ensemble, std::optio
     if (!options.quiet && options.progress.empty()) say_result(options.out, summary);
     if (!summary.too_many_failed()) return 0;
     std::cerr << fmt::format(
-        "{} of {} runs failed, more than 5 %: the maps should not be trusted; the reasons are in {}\n", summary.failed,
-        summary.run, (options.out / "runs.csv").string());
+        "{} of {} runs failed, more than 5 % of the weight: the maps should not be trusted; the reasons are in {}\n",
+        summary.failed, summary.run, (options.out / "runs.csv").string());
     return 3;
 }
 

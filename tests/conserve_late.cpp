@@ -8,6 +8,7 @@
 #include "coupling/growing_columns.h"
 #include "coupling/walled_columns.h"
 #include "growing_slope.h"
+#include "observe/budget.h"
 #include "observe/memory_archive.h"
 #include "run/memory_state.h"
 #include "run/run_loop.h"
@@ -226,6 +227,7 @@ TEST_CASE("What is hit at the start enters at the start", "[late]") {
     const DepthAveraged run(scene);
     CHECK(entry(run.extras(), 3).entered == 0.0);
     CHECK(run.status().mass_in == Approx(scene.density * scene.late[3].volume()).epsilon(1e-14));
+    CHECK(mass_came_in(run.status(), run.status()) == 0.0);  // it was there in the first frame
 }
 
 TEST_CASE("Late releases have the same bits on any number of threads, and when a run goes on between them",

@@ -120,6 +120,17 @@ TEST_CASE("Sums through lines go on after a resume and on any number of threads,
     CHECK(other.passed() == straight.passed());
 }
 
+TEST_CASE("Beyond the terrain a line has no discharge", "[sections]") {
+    class Everywhere final : public Probe {
+    public:
+        Sample at(const Vec2&) const override { return {0.0, 2.0, {3.0, 0.0}}; }
+    };
+    SectionLine line{"over the rim", {{10.0, 100.0}, {10.0, -60.0}}, false};
+    CHECK(discharge_through(line, 0.5, Everywhere()) == Approx(2.0 * 3.0 * 160.0));
+    line.terrain = {0.0, 0.0, 50.0, 80.0};
+    CHECK(discharge_through(line, 0.5, Everywhere()) == Approx(2.0 * 3.0 * 80.0));
+}
+
 TEST_CASE("Sections do not change a run", "[sections]") {
     Scene scene = slide();
     DepthAveraged with(scene);

@@ -1,6 +1,7 @@
 // Barriers as polygons for a GIS: attributes of the input, and what the run did to them, read back by GDAL.
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "base/atomic_file.h"
@@ -15,6 +16,7 @@
 using namespace frana;
 namespace fs = std::filesystem;
 using Catch::Contains;
+using Json = nlohmann::json;
 
 namespace {
 
@@ -107,6 +109,17 @@ TEST_CASE("The report has the time of contact of houses that columns reach, and 
     CHECK_THAT(table, Contains("barrier,first_contact [s],peak_force [N],peak_pressure [Pa]"));
     CHECK_THAT(table, Contains("house_2,,,,,,0,64,,,,,,,,\n"));
     CHECK(std::count(table.begin(), table.end(), '\n') == 4);
+    // What columns do not tell is null in the record, and not a number that could be one.
+    const Json record = Json::parse(text_of(village.path() / "run" / "run.json"));
+    for (const Json& barrier : record["barriers"])
+        for (const char* key : {"peak_force", "peak_force_time", "raw_peak_force", "impulse"})
+            CHECK(barrier[key].is_null());
+    CHECK(record["barriers"][1]["first_contact"].is_null());
+    CHECK(record["barriers"][1]["run_up"].is_null());
+    // No column stands higher above the ground beside a wall than the flow is deep there, two cells up the slope at most.
+    const double run_up = record["barriers"][0]["run_up"].get<double>(), foot = 200.0 - 3.0 * 75.0 / 5.0;
+    CHECK(run_up > foot);
+    CHECK(run_up < foot + 2.0 * 3.0 + record["results"]["max_depth"].get<double>());
 }
 
 TEST_CASE("Maps of a run show its barriers, drawn at once or later", "[barriers][results][figures]") {

@@ -216,6 +216,31 @@ TEST_CASE("scenarios count by their weights", "[ensemble]") {
     for (const double p : pond.map("many", "probability_reached").values) CHECK(p == Approx(1.0));
 }
 
+TEST_CASE("runs that fail count by their weight", "[ensemble]") {
+    const Pond pond;
+    pond.write(
+        "rows.csv",
+        "weight,release.0.outline,release.0.depth\n10,all.geojson,0.5\n29,all.geojson,1.5\n1,gone.geojson,1.5\n");
+    const std::string text =
+        "[ensemble]\ncase = \"case.toml\"\nmethod = \"table\"\ntable = \"rows.csv\"\nexceed = { peak_depth = [1.0] }\n";
+    pond.write("many.toml", text);
+    // A third of the rows, and a fortieth of the weight.
+    const Outcome light = pond.frana("ensemble many.toml --out light");
+    CHECK(light.code == 0);
+    CHECK_THAT(
+        light.out,
+        Contains("1 with 0.025 of the weight failed: of a probability p between 0.975 p and that and 0.025 may be"));
+    CHECK(Json::parse(text_of(pond.path("light/ensemble.json")))["failed_share"].get<double>() == Approx(0.025));
+    for (const double p : pond.map("light", "probability_peak_depth_1").values)
+        CHECK(p == Approx(29.0 / 39.0).epsilon(1e-6));
+    pond.write(
+        "rows.csv",
+        "weight,release.0.outline,release.0.depth\n10,all.geojson,0.5\n20,all.geojson,1.5\n10,gone.geojson,1.5\n");
+    const Outcome heavy = pond.frana("ensemble many.toml --out heavy");
+    CHECK(heavy.code == 3);
+    CHECK_THAT(heavy.err, Contains("1 of 3 runs failed, more than 5 % of the weight"));
+}
+
 TEST_CASE("runs that fail are counted and bound the maps, and stop no other", "[ensemble]") {
     const Pond pond;
     pond.write("many.toml",

@@ -79,6 +79,24 @@ TEST_CASE("A flood leaves its budget, and a section its table, figure and lines 
     CHECK(fs::file_size(dir / "figures" / "sections_discharge.png") > 1000);
 }
 
+TEST_CASE("What of a flood's table has not come in is told, before the run and after it", "[program][inflow]") {
+    const Flood plane;
+    const Outcome check = plane.frana("check CASE --set time.end=5");
+    CHECK_THAT(check.out,
+               Contains("inflow torrent: found a table that goes on to 9 s; expected time.end = 5 s or less"));
+    const fs::path dir = plane.folder() / "out";
+    CHECK(plane.frana("run CASE --quiet --set time.end=5 --set output.formats=[] --out " + dir.string()).code == 0);
+    const Json inflow = record_of(dir)["budgets"]["inflow"];
+    CHECK(inflow["tables"].get<double>() == Approx(kVolume).epsilon(1e-13));
+    // The rest of the triangle, and what of the last row has not come in.
+    const double rest = 0.5 * 4.0 * 60.0 * 4.0 / 7.0,
+                 left = inflow["tables"].get<double>() - inflow["expected"].get<double>();
+    CHECK(left >= rest * (1.0 - 1e-12));
+    CHECK(inflow["volume"].get<double>() == Approx(kVolume - left).epsilon(1e-12));
+    CHECK_THAT(text_of(dir / "report.md"), Contains("; of their 240 m3 ") && Contains(" m3 had not come in |"));
+    CHECK_THAT(text_of(dir / "report.md"), Contains("Of momentum and energy, what came in is taken off what left."));
+}
+
 TEST_CASE("A flood that is stopped in the middle of its table goes on with the same bits", "[program][inflow]") {
     const Flood plane;
     const std::string straight = (plane.folder() / "straight").string(), parts = (plane.folder() / "parts").string();

@@ -131,8 +131,8 @@ TEST_CASE("Houses that the flow does not meet change no bit of it, nor of what i
     for (WalledColumns* run : {&a, &b}) run_to(*run, 5.0);
     CHECK(a.status().kinetic == b.status().kinetic);
     CHECK(a.loads()->barriers[0].run_up == b.loads()->barriers[0].run_up);
-    CHECK(a.loads()->barriers[0].run_up > a.loads()->barriers[0].about.z());
-    CHECK(b.loads()->barriers[40].run_up == b.loads()->barriers[40].about.z());
+    CHECK(a.loads()->barriers[0].run_up > a.loads()->barriers[0].about.z());  // its foot on the flat
+    CHECK(std::isnan(b.loads()->barriers[40].run_up));
     CHECK(b.loads()->barriers[40].overtopped == 0.0);
 }
 
@@ -152,7 +152,8 @@ TEST_CASE("Two houses of a symmetric row are met alike, and resume to the last b
     // Sums of nodes run from south to north: mirror images differ by round-off, which steep fronts amplify.
     CHECK(loads[0].run_up == Approx(loads[1].run_up).margin(1e-6));
     for (std::size_t n = 0; n < row.size(); ++n) {
-        CHECK(resumed.loads()->barriers[n].run_up == loads[n].run_up);
+        CHECK((std::isnan(loads[n].run_up) ? std::isnan(resumed.loads()->barriers[n].run_up)
+                                           : resumed.loads()->barriers[n].run_up == loads[n].run_up));
         CHECK(resumed.loads()->barriers[n].overtopped == loads[n].overtopped);
     }
 }

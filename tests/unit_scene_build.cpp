@@ -1,4 +1,6 @@
 // From case file to Scene, with files that exist in memory only.
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <fstream>
 #include <numeric>
@@ -263,6 +265,21 @@ point = [1100, 2050]
     CHECK_FALSE(scene.output.history_per_step);
     REQUIRE(scene.gauges.size() == 1);
     CHECK(scene.gauges[0].point == Vec2(1100, 2050));
+}
+
+TEST_CASE("A gauge where the terrain has no elevation is refused", "[scene]") {
+    FakeGis files = slope_gis();
+    files.rasters["dem.tif"].at(3, 3) = Raster::nodata;
+    const GridGeometry g = files.rasters["dem.tif"].geometry;
+    const auto gauge = [&](double x, double y) {
+        return with_release("outline = \"release.geojson\"\ndepth = 2") +
+               fmt::format("[[gauge]]\nname = \"pit\"\npoint = [{}, {}]\n", x, y);
+    };
+    const auto problems = problems_of(gauge(g.x(3), g.y(3)), files);
+    REQUIRE(problems.size() == 1);
+    CHECK_THAT(problems.front(), Catch::Contains("gauge.0.point: found ") &&
+                                     Catch::Contains("where the terrain has no elevation; expected ground there"));
+    CHECK(built(gauge(g.x(5), g.y(3)), files).scene.gauges.size() == 1);
 }
 
 TEST_CASE("The defaults of the table are the defaults of the scene", "[scene]") {

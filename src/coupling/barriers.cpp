@@ -17,7 +17,8 @@
 namespace frana {
 namespace {
 
-constexpr double kClose = 2.0;  // cells: as far from a barrier run-up counts
+constexpr double kClose =
+    2.0;  // cells: as far from a barrier run-up counts; columns stop one before it, where its ramp begins
 
 /// Elevations of the nodes, `height` higher.
 Raster lifted(Raster bed, double height) {
@@ -289,7 +290,6 @@ ColumnWatch::ColumnWatch(const Scene& scene) : cell_(scene.bed.geometry.cell) {
         boxes_.push_back(box_of(surfaces_.back()));
         BarrierLoad load;
         load.about = middle_of(surfaces_.back(), scene.bed);
-        load.run_up = load.about.z();
         loads_.barriers.push_back(load);
     }
     tiles_ = BarrierTiles(scene.bed.geometry, boxes_, kClose * cell_);
@@ -335,9 +335,39 @@ void ColumnWatch::sample_at(std::size_t n, const ColumnAt& column, const Vec2* f
     const bool over = std::isfinite(top_of(surfaces_[n], column.place)) ||
                       (came_to_it && crosses(surfaces_[n], boxes_[n], *from, column.place));
     BarrierLoad& load = loads_.barriers[n];
-    load.run_up = std::max(load.run_up, column.surface);
+    // On the roof of a neighbour it does not run up this one.
+    if (!column.on_barrier || std::isfinite(top_of(surfaces_[n], column.place))) load.reach(column.surface);
     if (over && came_to_it) load.overtopped += column.volume;
     if (over && !was_over) over_[column.id].push_back(barrier);
+}
+
+bool ColumnWatch::is_raised(const Vec2& node) const {
+    const auto [first, end] = tiles_.barriers_at(node);
+    return std::any_of(first, end, [&](Index n) {
+        const Surface& surface = surfaces_[static_cast<std::size_t>(n)];
+        const double top = top_near(surface, node, cell_);
+        return std::isfinite(top) && is_in_reach(surface, node, top, cell_);
+    });
+}
+
+double ColumnWatch::surface_beside(const DepthAveraged& columns, const Vec2& place) const {
+    const Flow& flow = columns.flow();
+    const GridGeometry& g = flow.grid.geometry();
+    const auto first = [&](double at, double start, Index count) {
+        return std::clamp<Index>(static_cast<Index>(std::floor((at - start) / g.cell)), 0, count - 2);
+    };
+    const Index i = first(place.x(), g.x0, g.nx), j = first(place.y(), g.y0, g.ny);
+    double sum = 0.0, weights = 0.0;
+    for (const Index b : {j, j + 1})
+        for (const Index a : {i, i + 1}) {
+            const double w =
+                (1.0 - std::abs((place.x() - g.x(a)) / g.cell)) * (1.0 - std::abs((place.y() - g.y(b)) / g.cell));
+            const Index k = flow.grid.at(a, b);
+            if (!(w > 0.0) || !flow.is_in_reach(a, b) || !(flow.nodes.depth[k] > 0.0) || is_raised({g.x(a), g.y(b)}))
+                continue;
+            sum += w * (flow.bed.ground[k] + flow.nodes.depth[k]), weights += w;
+        }
+    return weights > 0.0 ? sum / weights : std::numeric_limits<double>::quiet_NaN();
 }
 
 bool ColumnWatch::is_due(DepthAveraged& columns, double before, double until) {
@@ -357,8 +387,10 @@ void ColumnWatch::sample_columns(const DepthAveraged& columns, double density) {
     for (Index p = 0; p < c.count(); ++p) {
         const Vec2 place(g.x0 + g.cell * c.x[p], g.y0 + g.cell * c.y[p]);
         if (!is_near(place)) continue;
+        const double beside = surface_beside(columns, place);
         const Sample there = columns.at(place);
-        sample({c.id[p], place, there.elevation + there.depth, c.mass[p] / density});
+        const bool on = std::isnan(beside);
+        sample({c.id[p], place, on ? there.elevation + there.depth : beside, c.mass[p] / density, on});
     }
 }
 
@@ -394,7 +426,6 @@ BarrierWatch::BarrierWatch(const Scene& scene, const Mpm3d& flow, double blur) :
         BarrierLoad load;
         load.faces.resize(static_cast<std::size_t>(surface.faces()));
         load.about = middle_of(surface, scene.bed);
-        load.run_up = load.about.z();
         loads_.barriers.push_back(load);
     }
     over_.resize(surfaces_.size());
@@ -456,14 +487,14 @@ void BarrierWatch::sample(const Mpm3d& flow) {
             over_[n][id] = 1;
             load.overtopped += flow.body().points.mass[p] / density_;
         }
-        load.run_up = std::max(load.run_up, reached_.level());
+        load.reach(reached_.level());
     }
 }
 
 void BarrierWatch::add(const BarrierLoads& before, const BarrierLoads& after) {
     for (std::size_t n = 0; n < loads_.barriers.size(); ++n) {
         BarrierLoad& load = loads_.barriers[n];
-        load.run_up = std::max(load.run_up, after.barriers[n].run_up);
+        load.reach(after.barriers[n].run_up);
         load.overtopped += after.barriers[n].overtopped - before.barriers[n].overtopped;
     }
 }

@@ -60,8 +60,9 @@ void stand_on_barriers(FlowColumns& columns, const std::vector<Surface>& surface
 struct ColumnAt {
     Index id;
     Vec2 place;
-    double surface;  ///< elevation of its top [m]
-    double volume;   ///< [m3]
+    double surface;   ///< elevation of its top [m]
+    double volume;    ///< [m3]
+    bool on_barrier;  ///< barriers raise all of the ground around
 };
 
 /// Which barriers are near a place, told by squares of some cells: the cost does not grow with barriers elsewhere.
@@ -111,6 +112,11 @@ public:
 
 private:
     void make_room(std::size_t id);
+    /// Whether a barrier raises the bed at a node.
+    bool is_raised(const Vec2& node) const;
+    /// Elevation of the top of what stands at a place [m]: of the nodes around it that no barrier raises, or half of the
+    /// barrier's height would count as run up. Not a number where barriers raise all that are wet.
+    double surface_beside(const DepthAveraged& columns, const Vec2& place) const;
     void sample_at(std::size_t n, const ColumnAt& column, const Vec2* from);
     std::vector<Surface> surfaces_;             ///< of each barrier
     std::vector<std::pair<Vec3, Vec3>> boxes_;  ///< around each

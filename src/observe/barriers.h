@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -34,9 +35,9 @@ struct BarrierSummary {
     double blur = 0.0;             ///< [s]
     Vec3 impulse{0, 0, 0};         ///< since the start [kg m/s]
     Vec3 about{0, 0, 0};           ///< place that moments are about [m]
-    double run_up = 0.0;           ///< as in BarrierLoad [m]
-    double overtopped = 0.0;       ///< material that was over it at any time [m3]
-    std::vector<MeanForce> means;  ///< for each window of the barrier
+    double run_up = std::numeric_limits<double>::quiet_NaN();  ///< as in BarrierLoad [m]
+    double overtopped = 0.0;                                   ///< material that was over it at any time [m3]
+    std::vector<MeanForce> means;                              ///< for each window of the barrier
 };
 
 /// More barriers than these have no table of their own: opening hundreds at every output costs more than steps do.

@@ -38,6 +38,10 @@ inline Budget budget(const Status& first, const Status& now) {
     return result;
 }
 
+/// What came in after the start: by inflows, and of releases that entered later [kg]. Of what enters with the first frame, as a
+/// release that the flow reaches at once, it was there at the start.
+inline double mass_came_in(const Status& first, const Status& now) { return now.mass_in - first.mass_in; }
+
 /// The largest values over a run, and when they were reached.
 struct Extremes {
     double max_depth = 0.0, max_depth_time = 0.0;           ///< [m], [s]

@@ -95,6 +95,7 @@ struct PointsApart {
 struct InflowBudget {
     double volume = 0.0;    ///< by the columns' masses [m3]
     double expected = 0.0;  ///< by the tables, up to the last row of each that came in [m3]
+    double tables = 0.0;    ///< by the whole tables [m3]
 };
 
 /// What became of a release that was to enter later.

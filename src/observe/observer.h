@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,16 @@ struct FaceLoad {
 struct BarrierLoad {
     std::vector<FaceLoad> faces;  ///< none where no forces are known
     Vec3 about{0, 0, 0};          ///< place that moments are about: the middle of the outline, on the bed [m]
-    double run_up = 0.0;          ///< of what is within two cells of it, the highest ever [m]; of points 99.9 %
-    double overtopped = 0.0;      ///< material that was over it at any time [m3]
-    bool touched = false;         ///< points have come to a face
+    /// Elevation of the highest top ever of what came to it [m]: of columns within two cells, of points 99.9 % there. Not a
+    /// number as long as nothing came.
+    double run_up = std::numeric_limits<double>::quiet_NaN();
+    double overtopped = 0.0;  ///< material that was over it at any time [m3]
+    bool touched = false;     ///< points have come to a face
+
+    /// Something reaches up to an elevation; minus infinity and not a number are nothing [m].
+    void reach(double elevation) {
+        if (elevation > -std::numeric_limits<double>::infinity() && !(run_up >= elevation)) run_up = elevation;
+    }
 };
 
 struct BarrierLoads {

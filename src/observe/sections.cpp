@@ -23,7 +23,9 @@ double discharge_through(const SectionLine& section, double spacing, const Probe
         const auto parts = static_cast<Index>(std::ceil(piece.norm() / spacing - 1e-9));
         for (Index part = 0; part < parts; ++part) {
             const double share = (static_cast<double>(part) + 0.5) / static_cast<double>(parts);
-            const Sample flow = probe.at(section.line[k] + share * piece);
+            const Vec2 place = section.line[k] + share * piece;
+            if (!section.covers(place)) continue;
+            const Sample flow = probe.at(place);
             sum += flow.depth * flow.velocity.dot(normal) / static_cast<double>(parts);
         }
     }

@@ -1,5 +1,7 @@
 #pragma once
+#include <array>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,12 @@ struct SectionLine {
     std::string name;
     Polyline line;         ///< map coordinates [m], two points or more
     bool to_right = true;  ///< what goes from its left to its right counts as positive; otherwise the other way
+    /// The terrain: least x and y, largest x and y [m]. Beyond it the line has no flow.
+    std::array<double, 4> terrain{-kFar, -kFar, kFar, kFar};
+    bool covers(const Vec2& place) const {
+        return place.x() >= terrain[0] && place.y() >= terrain[1] && place.x() <= terrain[2] && place.y() <= terrain[3];
+    }
+    static constexpr double kFar = std::numeric_limits<double>::infinity();
 };
 
 /// What passed a section in a run.

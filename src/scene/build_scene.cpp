@@ -340,6 +340,14 @@ private:
         return point.x() >= extent[0] && point.x() <= extent[2] && point.y() >= extent[1] && point.y() <= extent[3];
     }
 
+    /// Within the part that is held, where the elevation model has no data.
+    bool is_hole(const Vec2& point) const {
+        const GridGeometry& g = scene_.bed.geometry;
+        const auto i = static_cast<Index>(std::lround((point.x() - g.x0) / g.cell)),
+                   j = static_cast<Index>(std::lround((point.y() - g.y0) / g.cell));
+        return i >= 0 && j >= 0 && i < g.nx && j < g.ny && std::isnan(scene_.bed.at(i, j));
+    }
+
     std::string extent_text() const {
         const auto e = terrain().pixel_extent();
         return fmt::format("expected it within x {:.10g} to {:.10g}, y {:.10g} to {:.10g}", e[0], e[2], e[1], e[3]);
@@ -362,6 +370,10 @@ private:
             if (!inside(point))
                 problems_.add(case_.place(prefix + "point"), fmt::format("found {}, {} off the terrain", xy[0], xy[1]),
                               extent_text(), way_out);
+            else if (is_hole(point))
+                problems_.add(case_.place(prefix + "point"),
+                              fmt::format("found {}, {} where the terrain has no elevation", xy[0], xy[1]),
+                              "expected ground there", "move the gauge, or fill the hole (gdal_fillnodata.py)");
             scene_.gauges.push_back({case_.word(prefix + "name"), point});
         }
     }

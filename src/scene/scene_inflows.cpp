@@ -232,6 +232,11 @@ private:
                 fmt::format("found a table that begins at {:.6g} s; expected a time before time.end = {:.6g} s; "
                             "shift the table, or run longer",
                             table.time.front(), scene_.end));
+        if (table.time.back() > scene_.end)
+            scene_.log.push_back(
+                fmt::format("inflow {}: found a table that goes on to {:.6g} s; expected time.end = {:.6g} s or "
+                            "less; what comes later does not come in; run longer, or cut the table",
+                            inflow_.name, table.time.back(), scene_.end));
     }
 
     void set_speed(const Hydrograph& table) {

@@ -46,14 +46,20 @@ std::vector<Section> read_sections(const CaseFile& file, const GisReader& reader
             line = read_line(file, prefix + "line", reader, scene.bed.crs_wkt, scene.log);
         });
         if (!read) continue;
-        const bool there = std::any_of(line.begin(), line.end(), [&](const Vec2& point) {
+        const auto inside = [&](const Vec2& point) {
             return point.x() >= e[0] && point.x() <= e[2] && point.y() >= e[1] && point.y() <= e[3];
-        });
+        };
+        const bool there = std::any_of(line.begin(), line.end(), inside);
         if (!there)
             problems.add(
                 file.place(prefix + "line"), "found no point of it on the terrain",
                 fmt::format("expected it within x {:.10g} to {:.10g}, y {:.10g} to {:.10g}", e[0], e[2], e[1], e[3]),
                 "correct the coordinates, or widen terrain.window");
+        if (there && !std::all_of(line.begin(), line.end(), inside))
+            scene.log.push_back(fmt::format(
+                "section {}: found corners of its line beyond the terrain; expected all of it there; nothing "
+                "is counted beyond",
+                file.word(prefix + "name")));
         sections.push_back({file.word(prefix + "name"), line, rise_across(line, scene.bed) <= 0.0});
     }
     return sections;

@@ -89,7 +89,8 @@ double DepthAveraged::potential_of_support() const {
 Extras DepthAveraged::extras() const {
     Extras extras;
     const double others = (late_ ? late_->entered_volume() : 0.0) + mass_added_ / flow_.density;
-    if (feed_) extras.inflow = InflowBudget{status_.mass_in / flow_.density - others, feed_->expected()};
+    if (feed_)
+        extras.inflow = InflowBudget{status_.mass_in / flow_.density - others, feed_->expected(), feed_->whole()};
     if (late_) extras.late = late_->entries();
     return extras;
 }

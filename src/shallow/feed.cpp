@@ -200,6 +200,12 @@ double Feed::expected() const {
     return sum;
 }
 
+double Feed::whole() const {
+    double sum = 0.0;
+    for (const Source& source : sources_) sum += volume_until(source.inflow, source.inflow.time.back());
+    return sum;
+}
+
 double Feed::largest_column() const {
     double largest = 0.0;
     for (const Source& source : sources_)

@@ -49,6 +49,8 @@ public:
 
     /// Volume that should have come in so far: of the tables, up to the last row of each [m3].
     double expected() const;
+    /// By the whole tables [m3].
+    double whole() const;
     /// The largest volume of a column [m3].
     double largest_column() const;
     /// Columns that a half-cell square of the inflow holds.

@@ -147,8 +147,8 @@ template <Curvature kCurvature, class Real>
 
 /// What grains add to a node's motion [m/s^2], and the weight of the node on the bed, over that at rest [1].
 template <class Real>
-struct GrainPushOf {
-    FlatOf<Real> push;
+struct GrainForceOf {
+    FlatOf<Real> acceleration;
     Real weight;
 };
 
@@ -157,9 +157,9 @@ struct GrainPushOf {
 /// artificial viscosity at bores. Besides the share of their weight that the whole node is given. `bears`: share of the
 /// weight on the bed. `v`: velocity over a bend of the bed, which only grains feel.
 template <class Real>
-[[gnu::always_inline]] inline GrainPushOf<Real> grain_push(const StructuredBody& body, Index k,
-                                                           const GroundOf<Real>& ground, double bears,
-                                                           const FlatOf<Real>& v) {
+[[gnu::always_inline]] inline GrainForceOf<Real> grain_force(const StructuredBody& body, Index k,
+                                                             const GroundOf<Real>& ground, double bears,
+                                                             const FlatOf<Real>& v) {
     const Flow& flow = body.flow;
     const GrainsOf<Real> grains = grains_at(body, k, Real{});
     const FlatOf<Real> surface = surface_at(flow, k, Real{});

@@ -112,14 +112,15 @@ template <class Real>
 
 /// What grains do at a node whose weight acts already. Over a bend that is by the velocity in the middle of the step.
 template <class Real, class Law>
-[[gnu::always_inline]] inline GrainPushOf<Real> pushed(const NodeStep<Law>& step, Index k, const GroundOf<Real>& ground,
-                                                       const DrivenOf<Real>& node, double bears) {
-    const GrainPushOf<Real> at_start = grain_push(step.body, k, ground, bears, node.before);
+[[gnu::always_inline]] inline GrainForceOf<Real> force_of_grains(const NodeStep<Law>& step, Index k,
+                                                                 const GroundOf<Real>& ground,
+                                                                 const DrivenOf<Real>& node, double bears) {
+    const GrainForceOf<Real> at_start = grain_force(step.body, k, ground, bears, node.before);
     if (!step.body.curved) return at_start;
     const double dt = step.times.velocity_dt;
-    const FlatOf<Real> all = (Real{} + 1.0 / dt) * (node.driven - node.before) + at_start.push;
-    return grain_push(step.body, k, ground, bears,
-                      midway(step.law, ground, node.across * at_start.weight, node.before, all, dt));
+    const FlatOf<Real> all = (Real{} + 1.0 / dt) * (node.driven - node.before) + at_start.acceleration;
+    return grain_force(step.body, k, ground, bears,
+                       midway(step.law, ground, node.across * at_start.weight, node.before, all, dt));
 }
 
 /// A node without water, or four.
@@ -135,8 +136,8 @@ template <class Real, class Law>
     TallyOf<Real>& tally = step.of(Real{});
     tally.weight += mass * weight;
     if (body.grains) {
-        const GrainPushOf<Real> grains = pushed(step, k, ground, node, 1.0);
-        const FlatOf<Real> thrust = dt * grains.push;
+        const GrainForceOf<Real> grains = force_of_grains(step, k, ground, node, 1.0);
+        const FlatOf<Real> thrust = dt * grains.acceleration;
         node.driven += thrust, tally.pressure += mass * thrust;
         node.across *= grains.weight;
     }
@@ -161,8 +162,8 @@ void move_wet(NodeStep<Law>& step, Index k) {
     DrivenOf<double> node{met.mass, (1.0 - met.support) * ground.across, met.depth, before, before + weight, met.depth};
     impulse.weight += met.mass * vec(weight);
     if (body.grains) {
-        const GrainPushOf<double> grains = pushed(step, k, ground, node, 1.0 - met.support);
-        const FlatOf<double> thrust = dt * grains.push;
+        const GrainForceOf<double> grains = force_of_grains(step, k, ground, node, 1.0 - met.support);
+        const FlatOf<double> thrust = dt * grains.acceleration;
         node.driven += thrust, node.across *= grains.weight;
         impulse.pressure += met.mass * vec(thrust);
     }

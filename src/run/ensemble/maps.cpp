@@ -247,6 +247,10 @@ EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const 
     write_runs(dir, plan, base, results);
     summary.files = {"samples.csv", "runs.csv"};
     summary.effective = std::min(effective_number(runs.weights), runs.independent(plan));
+    summary.failed_share = runs.failed_weight / (runs.total + runs.failed_weight);
+    summary.weighted = std::any_of(plan.points.begin(), plan.points.end(), [&](const SamplePoint& point) {
+        return point.weight != plan.points.front().weight;
+    });
     MapWriter(dir, plan, base, runs, summary).write();
     write_hazard(dir, plan, base, runs, summary);
     draw_charts(dir, plan, base, runs, summary);

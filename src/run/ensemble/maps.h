@@ -24,13 +24,15 @@ struct EnsembleSummary {
     double core_seconds = 0.0;           ///< of all runs [s]
     std::optional<double> wall_seconds;  ///< of this process, where it ran them [s]
     double effective = 0.0;              ///< number of equal weights that tell as much
+    double failed_share = 0.0;           ///< of all weights, that of the runs that failed [1]
+    bool weighted = false;               ///< weights differ
     bool maps_drawn = true;
     std::vector<HazardArea> hazard;  ///< from the least to the greatest; empty where no classes were asked for
     std::string hazard_remark;       ///< what to mind about the classes, in sentences; empty where nothing
     std::vector<std::string> files;  ///< that were made
 
     /// So many fail that the maps should not be trusted.
-    bool too_many_failed() const { return static_cast<double>(failed) > 0.05 * static_cast<double>(run); }
+    bool too_many_failed() const { return failed_share > 0.05; }
 };
 
 /// Writes runs.csv, rasters, outlines, pictures, report.md and ensemble.json of all runs so far. Throws UserError when none has an answer, or a file cannot be written.

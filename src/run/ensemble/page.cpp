@@ -145,6 +145,7 @@ Json record_of(const EnsemblePlan& plan, const EnsembleBase& base, const Ensembl
                  {"samples", summary.samples},
                  {"run", summary.run},
                  {"failed", summary.failed},
+                 {"failed_share", summary.failed_share},
                  {"not_at_rest", summary.not_at_rest},
                  {"left_terrain", summary.left_terrain},
                  {"effective_number", summary.effective},
@@ -225,7 +226,12 @@ void write_runs(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBas
 
 std::string runs_sentence(const EnsembleSummary& s) {
     std::string text = fmt::format("{} of {} runs", s.run, s.samples);
-    if (s.failed > 0)
+    if (s.weighted) text += fmt::format(", which tell as much as {:.0f} of equal weight", s.effective);
+    if (s.failed > 0 && s.weighted)
+        text += fmt::format(
+            "; {} with {:.3g} of the weight failed: of a probability p between {:.3g} p and that and {:.3g} may be",
+            s.failed, s.failed_share, 1.0 - s.failed_share, s.failed_share);
+    else if (s.failed > 0)
         text += fmt::format("; {} failed: where k of n runs exceed a threshold, between k and k + {} may", s.failed,
                             s.failed);
     if (s.not_at_rest > 0) text += fmt::format("; {} still moved at time.end", s.not_at_rest);

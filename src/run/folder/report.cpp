@@ -51,13 +51,24 @@ std::string left_text(const RunRecord& r) {
 /// what was released and came in.
 std::string bed_text(const RunRecord& r) {
     const Status::Bed& bed = r.summary.last.bed;
-    const double given = r.summary.first.mass + r.summary.last.mass_in - r.summary.first.mass_in;
+    const double given = r.summary.first.mass + mass_came_in(r.summary.first, r.summary.last);
     return fmt::format(
         "the flow took {:.6g} m3 of it and of what it had left behind (its mass grew {:.3g} times), {:.3g} m deep at "
         "most; left behind {:.6g} "
         "m3; balance {:.1e}",
         bed.eroded / r.density, given > 0.0 ? (given + bed.eroded) / given : 1.0, bed.deepest,
         bed.deposited / r.density, budget(r.summary.first, r.summary.last).bed_error);
+}
+
+/// "9100 m3; by the tables 9100 m3, difference 1e-12; of their 12000 m3 2900 m3 had not come in".
+std::string inflow_text(const InflowBudget& inflow) {
+    constexpr double kNone = 1e-9;  // of the tables: round-off of their sums
+    const double left = inflow.tables - inflow.expected;
+    return fmt::format("{:.6g} m3; by the tables {:.6g} m3, difference {:.1e}", inflow.volume, inflow.expected,
+                       inflow.volume - inflow.expected) +
+           (left > kNone * inflow.tables
+                ? fmt::format("; of their {:.6g} m3 {:.6g} m3 had not come in", inflow.tables, left)
+                : "");
 }
 
 /// "300 m3 at t = 12.4 s, when the flow reached it".
@@ -73,10 +84,7 @@ std::string results(const RunRecord& r) {
     const RunSummary& s = r.summary;
     std::string text = "## Results\n\n| Quantity | Value |\n|---|---|\n";
     text += row("release volume", fmt::format("{:.6g} m3", r.release_volume));
-    if (r.extras.inflow)
-        text += row("came in by inflows",
-                    fmt::format("{:.6g} m3; by the tables {:.6g} m3, difference {:.1e}", r.extras.inflow->volume,
-                                r.extras.inflow->expected, r.extras.inflow->volume - r.extras.inflow->expected));
+    if (r.extras.inflow) text += row("came in by inflows", inflow_text(*r.extras.inflow));
     for (const LateEntry& late : r.extras.late) text += row("entered later: " + late.name, late_text(late));
     text += row("simulated time",
                 fmt::format("{:.6g} s of {:.6g} s, {} steps, {} frames", s.last.time, r.end, s.steps, s.frames));
@@ -125,18 +133,27 @@ std::string results(const RunRecord& r) {
 std::string budgets(const RunRecord& r) {
     const RunSummary& s = r.summary;
     const Budget b = budget(s.first, s.last);
+    const double came = mass_came_in(s.first, s.last);
     std::string text =
         "## Budgets\n\n| Balance | At the start | At the end | Left the domain | Residual |\n"
         "|---|---|---|---|---|\n";
-    text += fmt::format("| mass [kg] | {:.8g} | {:.8g} | {:.4g} | {:.1e} of the initial mass |\n", s.first.mass,
-                        s.last.mass, s.last.mass_left, b.mass_error);
-    if (s.last.mass_in > 0.0) text += fmt::format("| of it came in [kg] | 0 | {:.8g} | | |\n", s.last.mass_in);
+    text += fmt::format("| mass [kg] | {:.8g} | {:.8g} | {:.4g} | {:.1e} of {} |\n", s.first.mass, s.last.mass,
+                        s.last.mass_left, b.mass_error,
+                        s.last.bed.initial > 0.0 ? "all mass, with the loose bed's"
+                        : came > 0.0             ? "all mass"
+                                                 : "the initial mass");
+    if (came > 0.0) text += fmt::format("| of it came in [kg] | 0 | {:.8g} | | |\n", came);
+    const double to_bed = s.last.bed.deposited - s.last.bed.eroded;
+    if (to_bed != 0.0) text += fmt::format("| became bed, less what the bed gave [kg] | | {:.8g} | | |\n", to_bed);
     for (const std::size_t axis : {0, 1})
         text += fmt::format("| momentum {} [kg m/s] | {:.4g} | {:.4g} (impulse {:.4g}) | {:.4g} | {:.1e} |\n",
                             axis == 0 ? "x" : "y", s.first.momentum[axis], s.last.momentum[axis], s.last.impulse[axis],
                             s.last.momentum_left[axis], b.momentum_residual[axis]);
     text += fmt::format("| energy [J] | {:.5g} | {:.5g} | {:.4g} | {:.2e} |\n", s.first.kinetic + s.first.potential,
                         s.last.kinetic + s.last.potential + s.last.stored, s.last.energy_left, b.energy_residual);
+    if (const double given = s.last.bed.energy - s.first.bed.energy; given != 0.0)
+        text += fmt::format("| of it the bed gave [J] | | {:.5g} | | |\n", given);
+    if (came > 0.0) text += "\nOf momentum and energy, what came in is taken off what left.\n";
     text += fmt::format(
         "\nOf the energy at the end, {:.4g} J are kinetic; {:.4g} J were dissipated. Particles to grid, "
         "worst step: mass {:.1e}, momentum {:.1e} (relative).\n\n",
@@ -209,7 +226,7 @@ std::string files(const RunRecord& r, const std::vector<Product>& products) {
 
 /// Whether something ran over a barrier, or stood before one of which no more is known, such as a wall along a line.
 bool was_reached(const BarrierSummary& b, const BarrierHit& hit) {
-    return b.overtopped > 0.0 || (std::isnan(hit.area) && b.run_up > b.about[2]);
+    return b.overtopped > 0.0 || (std::isnan(hit.area) && std::isfinite(b.run_up));
 }
 
 /// The barriers that a report has rows for, in the case's order: all, or of many the most deeply covered ones. One whose depth
@@ -230,14 +247,15 @@ std::vector<std::size_t> shown_barriers(const RunRecord& r) {
 }
 
 std::string barrier_row(const BarrierSummary& b) {
-    const std::string run_up = b.run_up > b.about[2] ? fmt::format("{:.5g} m", b.run_up) : "-";  // where it begins
+    const bool reached = std::isfinite(b.run_up);
+    const std::string run_up = reached ? fmt::format("{:.5g} m", b.run_up) : "-";
     if (b.first_contact < 0.0)
-        return fmt::format("| {} | {} | - | {} | {:.5g} m3 |\n", b.name,
-                           b.blur <= 0.0 && b.run_up > b.about[2] ? "-" : "none", run_up, b.overtopped);
+        return fmt::format("| {} | {} | - | {} | {:.5g} m3 |\n", b.name, b.blur <= 0.0 && reached ? "-" : "none",
+                           run_up, b.overtopped);
     if (b.blur <= 0.0)
         return fmt::format("| {} | {:.4g} s | - | {} | {:.5g} m3 |\n", b.name, b.first_contact, run_up, b.overtopped);
-    return fmt::format("| {} | {:.4g} s | {:.4g}, {:.4g}, {:.4g} N s | {:.5g} m | {:.5g} m3 |\n", b.name,
-                       b.first_contact, b.impulse[0], b.impulse[1], b.impulse[2], b.run_up, b.overtopped);
+    return fmt::format("| {} | {:.4g} s | {:.4g}, {:.4g}, {:.4g} N s | {} | {:.5g} m3 |\n", b.name, b.first_contact,
+                       b.impulse[0], b.impulse[1], b.impulse[2], run_up, b.overtopped);
 }
 
 /// Without what is round-off beside the largest entry.
@@ -268,7 +286,7 @@ std::string mean_forces(const RunRecord& r, const std::vector<std::size_t>& show
 std::string barriers(const RunRecord& r) {
     if (r.barriers.empty()) return "";
     std::string text =
-        "## Barriers\n\n| Barrier | First contact | Impulse x, y, z | Run-up to | Over it |\n"
+        "## Barriers\n\n| Barrier | First contact | Impulse x, y, z | Run-up to elevation | Over it |\n"
         "|---|---|---|---|---|\n";
     double blur = 0.0, hardest = 0.0;
     for (const BarrierSummary& b : r.barriers)
@@ -291,7 +309,11 @@ std::string barriers(const RunRecord& r) {
             hardest, blur);
     else if (blur <= 0.0)
         text += fmt::format(
-            "\nFirst contact is when the depth at a face first exceeds {:.4g} m (`output.footprint_depth`); of walls "
+            "\nRun-up is the highest top of what stood within two cells of a barrier, or on it. On a slope a thin flow "
+            "counts "
+            "as high as the ground two cells above the barrier: `frana converge` tells. First contact is when the "
+            "depth at a face first exceeds {:.4g} m "
+            "(`output.footprint_depth`); of walls "
             "along lines and of meshes it is not known. Forces are "
             "measured on points in space only ([[stage]]); columns take a barrier for ground. Over it: columns whose "
             "middle came onto it.\n",
@@ -365,8 +387,8 @@ std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_d
         fmt::format("  computed   {} steps, {} particles, {:.3g} M particle-steps/s, {} ({:.0f} % output)\n", s.steps,
                     s.last.particles, s.wall_seconds > 0.0 ? 1e-6 * s.particle_steps / s.wall_seconds : 0.0,
                     clock_text(s.wall_seconds), 100.0 * s.output_share());
-    const std::string later =
-        s.last.mass_in > 0.0 ? fmt::format("; {:.6g} m3 came in later", s.last.mass_in / r.density) : "";
+    const double came = mass_came_in(s.first, s.last);
+    const std::string later = came > 0.0 ? fmt::format("; {:.6g} m3 came in later", came / r.density) : "";
     text += fmt::format("  released   {:.6g} m3{}; {} left the domain; mass error {:.1e}\n", r.release_volume, later,
                         left_text(r), budget(s.first, s.last).mass_error);
     text += fmt::format("  deepest    {:.4g} m, fastest {:.4g} m/s, front at {:.5g} m\n", s.extremes.max_depth,

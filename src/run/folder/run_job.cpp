@@ -73,7 +73,8 @@ void note_simulation(RunRecord& record, const Scene& scene, const Simulation& si
     record.extras = simulation.extras();
     for (const std::string& remark : simulation.remarks()) record.warnings.push_back(remark);
     if (const Friction* used = simulation.friction()) record.friction = used->parts, record.friction_of_part = true;
-    if (!record.extras.water) record.release_volume = record.summary.first.mass / scene.density;
+    if (!record.extras.water)
+        record.release_volume = (record.summary.first.mass - record.summary.first.mass_in) / scene.density;
 }
 
 void note_results(RunRecord& record, const std::vector<ProductRaster>& rasters) {
@@ -201,7 +202,9 @@ int threads_for_files() {
 std::unique_ptr<Observer> make_sections(const Scene& scene, const fs::path& run_dir,
                                         std::vector<SectionSummary>& summaries) {
     std::vector<SectionLine> lines;
-    for (const Section& section : scene.sections) lines.push_back({section.name, section.line, section.to_right});
+    const GridGeometry& terrain = scene.wider ? scene.wider->grid : scene.bed.geometry;
+    for (const Section& section : scene.sections)
+        lines.push_back({section.name, section.line, section.to_right, terrain.pixel_extent()});
     if (lines.empty()) return {};
     return std::make_unique<Sections>(run_dir, lines, 0.5 * scene.bed.geometry.cell, summaries);
 }

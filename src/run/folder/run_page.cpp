@@ -52,7 +52,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const PlainJson& recor
     const PlainJson results = record.at("results"), mass = record.at("budgets").at("mass");
     std::vector<std::pair<std::string, std::string>> facts = {
         {"Released", measured(record.at("release_volume"), "m\u00b3")},
-        {"Runout", measured(results.at("max_front"), "m")},
+        {"Farthest front", measured(results.at("max_front"), "m")},
         {"Largest depth", measured(results.at("max_depth"), "m")},
         {"Largest speed", measured(results.at("max_speed"), "m/s")},
         {"Covered area", measured(results.at("footprint_area"), "m\u00b2")},

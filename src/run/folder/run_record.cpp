@@ -72,7 +72,7 @@ Json mass_json(const RunSummary& s) {
     return {{"unit", "kg"},
             {"initial", s.first.mass},
             {"final", s.last.mass},
-            {"came_in", s.last.mass_in},
+            {"came_in", mass_came_in(s.first, s.last)},
             {"left_domain", s.last.mass_left},
             {"relative_error", budget(s.first, s.last).mass_error}};
 }
@@ -89,6 +89,7 @@ Json energy_json(const RunSummary& s) {
             {"potential", s.last.potential},
             {"dissipated", s.last.dissipated},
             {"left_domain", s.last.energy_left},
+            {"bed", s.last.bed.energy - s.first.bed.energy},
             {"stored", s.last.stored},
             {"points",
              {{"friction", s.last.in_3d.friction},
@@ -220,24 +221,31 @@ Json means_json(const std::vector<MeanForce>& means) {
 
 Json barriers_json(const std::vector<BarrierSummary>& barriers) {
     Json list = Json::array();
-    for (const BarrierSummary& b : barriers)
+    for (const BarrierSummary& b : barriers) {
+        const bool measured = b.blur > 0.0;  // forces; columns alone tell none
+        const auto if_measured = [&](double number) { return measured ? Json(number) : Json(nullptr); };
         list.push_back({{"name", b.name},
-                        {"first_contact", b.first_contact},
-                        {"peak_force", b.peak_force},
-                        {"peak_force_time", b.peak_force_time},
-                        {"averaged_over", b.blur},
-                        {"raw_peak_force", b.raw_peak_force},
-                        {"mean_forces", means_json(b.blur > 0.0 ? b.means : std::vector<MeanForce>())},
-                        {"impulse", {b.impulse[0], b.impulse[1], b.impulse[2]}},
+                        {"first_contact", b.first_contact >= 0.0 ? Json(b.first_contact) : Json(nullptr)},
+                        {"peak_force", if_measured(b.peak_force)},
+                        {"peak_force_time", if_measured(b.peak_force_time)},
+                        {"averaged_over", if_measured(b.blur)},
+                        {"raw_peak_force", if_measured(b.raw_peak_force)},
+                        {"mean_forces", means_json(measured ? b.means : std::vector<MeanForce>())},
+                        {"impulse", measured ? Json{b.impulse[0], b.impulse[1], b.impulse[2]} : Json(nullptr)},
                         {"moments_about", {b.about[0], b.about[1], b.about[2]}},
-                        {"run_up", b.run_up},
+                        {"run_up", std::isfinite(b.run_up) ? Json(b.run_up) : Json(nullptr)},
                         {"overtopped_volume", b.overtopped}});
+    }
     return list;
 }
 
 Json inflow_json(const InflowBudget& inflow) {
     const double error = inflow.expected > 0.0 ? (inflow.volume - inflow.expected) / inflow.expected : 0.0;
-    return {{"unit", "m3"}, {"volume", inflow.volume}, {"expected", inflow.expected}, {"relative_error", error}};
+    return {{"unit", "m3"},
+            {"volume", inflow.volume},
+            {"expected", inflow.expected},
+            {"tables", inflow.tables},
+            {"relative_error", error}};
 }
 
 Json late_json(const std::vector<LateEntry>& entries) {
