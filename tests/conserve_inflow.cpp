@@ -255,6 +255,25 @@ TEST_CASE("An inflow goes on where the terrain grows in the middle of its table,
     CHECK(part.passed()[0] == Approx(below).epsilon(1e-12));
 }
 
+TEST_CASE("What holds an inflow up behind its line is no flow to peaks", "[inflow]") {
+    DepthAveraged run(slope(false));
+    while (run.status().time < 2.5) run.advance(2.5);
+    const Frame frame = run.frame();
+    const auto at = [&](const char* field, Index i, Index j) {
+        const auto found =
+            std::find_if(frame.nodes.begin(), frame.nodes.end(), [&](const Field& f) { return f.name == field; });
+        return found->data[j * 90 + i];
+    };
+    // The line lies at x = 20, and the flow goes to larger x.
+    CHECK(at("depth", 18, 26) > 0.1);
+    for (const Index behind : {16, 17, 18}) {
+        CHECK(at("peak_depth", behind, 26) == 0.0);
+        CHECK(at("peak_speed", behind, 26) == 0.0);
+    }
+    CHECK(at("peak_depth", 22, 26) > 0.1);
+    CHECK(at("peak_speed", 22, 26) > 1.0);
+}
+
 TEST_CASE("An inflow beside a barrier", "[inflow]") {
     Scene scene = slope(false);
     Barrier wall;

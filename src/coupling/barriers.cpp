@@ -293,6 +293,23 @@ ColumnWatch::ColumnWatch(const Scene& scene) : cell_(scene.bed.geometry.cell) {
         loads_.barriers.push_back(load);
     }
     tiles_ = BarrierTiles(scene.bed.geometry, boxes_, kClose * cell_);
+    for (const Seeds* seeds : scene.all_particles())
+        for (std::size_t p = 0; p < seeds->x.size(); ++p)
+            if (is_on_top({seeds->x[p], seeds->y[p]})) placed_ += seeds->volume[p];
+}
+
+bool ColumnWatch::is_on_top(const Vec2& place) const {
+    const auto [first, end] = tiles_.barriers_at(place);
+    return std::any_of(first, end,
+                       [&](Index n) { return std::isfinite(top_of(surfaces_[static_cast<std::size_t>(n)], place)); });
+}
+
+std::vector<std::string> ColumnWatch::remarks() const {
+    if (!(placed_ > 0.0)) return {};
+    return {fmt::format(
+        "barriers: found {:.4g} m3 of releases on top of barriers; expected none, since it falls from there; move "
+        "the outlines apart",
+        placed_)};
 }
 
 void ColumnWatch::inherit(Index child, Index parent) {
@@ -350,7 +367,7 @@ bool ColumnWatch::is_raised(const Vec2& node) const {
     });
 }
 
-double ColumnWatch::surface_beside(const DepthAveraged& columns, const Vec2& place) const {
+double ColumnWatch::adjacent_surface(const DepthAveraged& columns, const Vec2& place) const {
     const Flow& flow = columns.flow();
     const GridGeometry& g = flow.grid.geometry();
     const auto first = [&](double at, double start, Index count) {
@@ -387,10 +404,10 @@ void ColumnWatch::sample_columns(const DepthAveraged& columns, double density) {
     for (Index p = 0; p < c.count(); ++p) {
         const Vec2 place(g.x0 + g.cell * c.x[p], g.y0 + g.cell * c.y[p]);
         if (!is_near(place)) continue;
-        const double beside = surface_beside(columns, place);
+        const double adjacent = adjacent_surface(columns, place);
         const Sample there = columns.at(place);
-        const bool on = std::isnan(beside);
-        sample({c.id[p], place, on ? there.elevation + there.depth : beside, c.mass[p] / density, on});
+        const bool on = std::isnan(adjacent);
+        sample({c.id[p], place, on ? there.elevation + there.depth : adjacent, c.mass[p] / density, on});
     }
 }
 

@@ -108,15 +108,19 @@ public:
     /// A round over all columns, of a material of that density [kg/m3].
     void sample_columns(const DepthAveraged& columns, double density);
     const BarrierLoads& loads() const { return loads_; }
+    /// Of what a scene places on barriers.
+    std::vector<std::string> remarks() const;
     void serialize(Archive& archive);
 
 private:
     void make_room(std::size_t id);
+    /// Whether a place is on top of a barrier.
+    bool is_on_top(const Vec2& place) const;
     /// Whether a barrier raises the bed at a node.
     bool is_raised(const Vec2& node) const;
     /// Elevation of the top of what stands at a place [m]: of the nodes around it that no barrier raises, or half of the
     /// barrier's height would count as run up. Not a number where barriers raise all that are wet.
-    double surface_beside(const DepthAveraged& columns, const Vec2& place) const;
+    double adjacent_surface(const DepthAveraged& columns, const Vec2& place) const;
     void sample_at(std::size_t n, const ColumnAt& column, const Vec2* from);
     std::vector<Surface> surfaces_;             ///< of each barrier
     std::vector<std::pair<Vec3, Vec3>> boxes_;  ///< around each
@@ -127,7 +131,8 @@ private:
     std::vector<double> last_;                  ///< x and y of each column's place in that round, by its number [m]
     BarrierLoads loads_;
     double cell_;
-    double moved_ = 0.0;  ///< farthest way of a column since the last round [m]
+    double placed_ = 0.0;  ///< of releases, on top of barriers [m3]
+    double moved_ = 0.0;   ///< farthest way of a column since the last round [m]
 };
 
 /// What 3D points do to barriers.

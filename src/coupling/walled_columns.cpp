@@ -19,6 +19,7 @@ void WalledColumns::hold_all(Scene scene, Start start) {
 std::vector<std::string> WalledColumns::remarks() const {
     std::vector<std::string> all = inner().remarks();
     for (const std::string& remark : remarks_on(footings_)) all.push_back(remark);
+    for (const std::string& remark : watch_.remarks()) all.push_back(remark);
     return all;
 }
 

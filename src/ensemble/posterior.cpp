@@ -109,8 +109,9 @@ std::vector<std::vector<double>> Posterior::next(Index count) const {
         Eigen::VectorXd normal(keys_);
         for (Index k = 0; k < keys_; ++k) normal[k] = normal_of(unit(k));
         if (!from_prior) normal = normals_[chosen] + round.root * normal;
-        std::vector<double>& point = points.emplace_back();
+        std::vector<double> point;
         for (const double z : normal) point.push_back(share_below(z));
+        points.push_back(std::move(point));
     }
     return points;
 }

@@ -212,8 +212,12 @@ void DepthAveraged::arrive(const PointSums& points) {
     if (feed_) timed_("inflow", [&] { support_inflows(); });
     timed_("depth", [&] { fold_walls(flow_); });
     const NodeSums sums = raise_surface();
-    const FlowSpeeds speeds =
-        timed_("peaks", [&] { return update_peaks(flow_, steep_, curved_, status_.time, footprint_depth_, peaks_); });
+    const FlowSpeeds speeds = timed_("peaks", [&] {
+        put_peaks_aside();
+        const FlowSpeeds all = update_peaks(flow_, steep_, curved_, status_.time, footprint_depth_, peaks_);
+        put_peaks_back();
+        return all;
+    });
     status_.max_speed = speeds.fastest, status_.mean_speed = speeds.mean;
 
     stress_power_ = points.stress_power;

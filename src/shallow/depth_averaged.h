@@ -126,6 +126,14 @@ private:
     void enter_added();
     void support_inflows();
     double potential_of_support() const;
+    struct Supported {
+        Index k;
+        double before;
+    };
+    bool is_support(const Supported& node) const;
+    bool is_support(Index k) const;
+    void put_peaks_aside();
+    void put_peaks_back();
     void choose_sleep();
     void make_merger();
     double fastest_signal() const;
@@ -160,12 +168,13 @@ private:
     Seeds added_;                       ///< from outside, that wait for the next step
     double mass_added_ = 0.0;           ///< that has entered [kg]
     bool aside_ = false;                ///< it comes back to a state that was put aside
-    struct Supported {
-        Index k;
-        double before;
-    };
     std::vector<Supported> supported_;  ///< nodes with depth of what is still to come in; their mass without [kg]
-    std::optional<Passages> passages_;  ///< nothing without sections
+    struct NodePeaks {
+        Index k;
+        double depth, arrival, speed, pressure, dynamic_pressure;
+    };
+    std::vector<NodePeaks> peaks_aside_;  ///< of nodes whose depth is no flow's
+    std::optional<Passages> passages_;    ///< nothing without sections
     bool births_wanted_ = false;
     Index end_of_births_ = 0;  ///< number after that of the last point that a split made
     Peaks peaks_;

@@ -147,7 +147,8 @@ void DepthAveraged::take_rows() {
 /// Releases whose time has come, and those that the flow has reached. What enters may reach others.
 void DepthAveraged::enter_late() {
     const auto reached = [this](Index i, Index j) {
-        return flow_.is_in_reach(i, j) && flow_.nodes.depth[flow_.grid.at(i, j)] > footprint_depth_;
+        const Index k = flow_.grid.at(i, j);
+        return flow_.is_in_reach(i, j) && flow_.nodes.depth[k] > footprint_depth_ && !is_support(k);
     };
     for (;;) {
         const std::vector<const LateRelease*>& releases = late_->enter(status_.time, reached);

@@ -78,6 +78,32 @@ void DepthAveraged::support_inflows() {
     activate_all(flow_);
 }
 
+/// Whether less than half of what lies there is the flow's own.
+bool DepthAveraged::is_support(const Supported& node) const {
+    return node.before < 0.5 * flow_.nodes.column_mass[node.k];
+}
+
+bool DepthAveraged::is_support(Index k) const {
+    const auto found = std::lower_bound(supported_.begin(), supported_.end(), k,
+                                        [](const Supported& a, Index wanted) { return a.k < wanted; });
+    return found != supported_.end() && found->k == k && is_support(*found);
+}
+
+void DepthAveraged::put_peaks_aside() {
+    peaks_aside_.clear();
+    for (const Supported& node : supported_)
+        if (is_support(node))
+            peaks_aside_.push_back({node.k, peaks_.depth[node.k], peaks_.arrival[node.k], peaks_.speed[node.k],
+                                    peaks_.pressure[node.k], peaks_.dynamic_pressure[node.k]});
+}
+
+void DepthAveraged::put_peaks_back() {
+    for (const NodePeaks& had : peaks_aside_) {
+        peaks_.depth[had.k] = had.depth, peaks_.arrival[had.k] = had.arrival, peaks_.speed[had.k] = had.speed;
+        peaks_.pressure[had.k] = had.pressure, peaks_.dynamic_pressure[had.k] = had.dynamic_pressure;
+    }
+}
+
 /// It is not of the flow.
 double DepthAveraged::potential_of_support() const {
     double sum = 0.0;

@@ -226,6 +226,8 @@ void write_runs(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBas
 
 std::string runs_sentence(const EnsembleSummary& s) {
     std::string text = fmt::format("{} of {} runs", s.run, s.samples);
+    if (s.run < s.samples)
+        text += " (the others are not made yet: the maps are of a part, which need not be a fair sample)";
     if (s.weighted) text += fmt::format(", which tell as much as {:.0f} of equal weight", s.effective);
     if (s.failed > 0 && s.weighted)
         text += fmt::format(
