@@ -8,9 +8,12 @@
 #include <optional>
 #include <utility>
 
+#include "ensemble/statistics.h"
+
 namespace frana {
 namespace {
 
+constexpr double kFewTell = 10.0;  ///< points of equal weight below which what they tell may be chance
 constexpr double kNone = 1e-6;  ///< a share of the weight that is as good as none, and the rounding of a sum of shares
 
 /// Of numbers with weights, sorted: where half of the weight lies below a number and half above the one before, their mean.
@@ -36,9 +39,10 @@ Nearness nearness_of(const EventFit& fit, const std::vector<double>& weights) {
         sum += weights[k] * *boundary, flowing += weights[k];
     }
     constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-    if (!(flowing > kNone * all)) return {nothing, nothing};
+    const double effective = effective_number(weights);
+    if (!(flowing > kNone * all)) return {nothing, nothing, effective};
     std::sort(known.begin(), known.end());
-    return {sum / flowing, median_of(known, flowing)};
+    return {sum / flowing, median_of(known, flowing), effective};
 }
 
 /// A distance in a table; a dash where there is none.
@@ -60,12 +64,16 @@ std::string warning(const Calibration& c, const std::string& teller, std::size_t
                     const Nearness& prior) {
     const std::string& name = c.plan.events[event].name;
     if (std::isnan(prior.median)) return "";
-    if (std::isnan(told.median)) return fmt::format("\n{} predicts no flow for {}, and so misleads.\n", teller, name);
+    const std::string few = told.effective < kFewTell
+                                ? fmt::format(" By {:.0f} points of equal weight: it may be chance.", told.effective)
+                                : "";
+    if (std::isnan(told.median))
+        return fmt::format("\n{} predicts no flow for {}, and so misleads.{}\n", teller, name, few);
     if (!(told.median > prior.median)) return "";
     return fmt::format(
         "\n{} predicts {} worse than what was known before: by the medians, outlines {:.1f} m apart "
-        "instead of {:.1f} m.\n",
-        teller, name, told.median, prior.median);
+        "instead of {:.1f} m.{}\n",
+        teller, name, told.median, prior.median, few);
 }
 
 std::string pairs_section(const Calibration& c, const std::vector<Prediction>& rows) {

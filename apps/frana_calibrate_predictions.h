@@ -11,6 +11,7 @@ namespace frana {
 /// flowed. Not numbers where it did in none that has weight.
 struct Nearness {
     double mean = 0.0, median = 0.0;
+    double effective = 0.0;  ///< points of equal weight that tell as much
 };
 
 struct Prediction {

@@ -88,10 +88,11 @@ void draw_gauges(const Charts& of) {
     }
 }
 
-/// How the middle of the runs settles with their number.
+/// How the middle of the runs settles with their number. Of a grid and of a table the order has a meaning.
 void draw_convergence(const Charts& of) {
     const bool alike = of.summary.effective > 0.999 * static_cast<double>(of.runs.ended.size());
-    if (!alike || of.plan.quantiles.empty() || of.runs.ended.size() < 2) return;
+    const bool ordered = of.plan.method == Method::grid || of.plan.method == Method::table;
+    if (!alike || ordered || of.plan.quantiles.empty() || of.runs.ended.size() < 2) return;
     ChartFigure figure;
     figure.title = of.base.title;
     figure.x_label = "number of runs";
@@ -101,7 +102,9 @@ void draw_convergence(const Charts& of) {
     for (std::size_t k = 0; k < of.runs.ended.size(); ++k) {
         sorted.insert(std::upper_bound(sorted.begin(), sorted.end(), of.runs.ended[k]->reach), of.runs.ended[k]->reach);
         for (std::size_t n = 0; n < curves.size(); ++n) {
-            const auto below = static_cast<std::size_t>(of.plan.quantiles[n] * static_cast<double>(k));
+            // As WeightedRuns::quantile: the least that so many do not exceed.
+            const double so_many = std::ceil(of.plan.quantiles[n] * static_cast<double>(k + 1) - 1e-9);
+            const auto below = static_cast<std::size_t>(std::max(0.0, so_many - 1.0));
             curves[n].x.push_back(static_cast<double>(k + 1)), curves[n].y.push_back(sorted[below]);
         }
     }

@@ -145,7 +145,8 @@ private:
             high.values[k] = (p.values[k] * runs_.total + runs_.failed_weight) / all;
         }
         raster(name + "_error", error, "1", "standard error of the " + meaning);
-        if (plan_.method == Method::random) write_wilson(name, p, meaning);
+        // The standard error is 0 where all runs agree, however few they are. Designs are closer than chance; a table may be chance.
+        if (plan_.method == Method::random || plan_.method == Method::table) write_wilson(name, p, meaning);
         if (runs_.failed_weight > 0.0) {
             raster(name + "_low", low, "1", meaning + ", if no run that failed did");
             everywhere(name + "_high", high, "1", meaning + ", if every run that failed did");

@@ -53,11 +53,11 @@ std::string bed_text(const RunRecord& r) {
     const Status::Bed& bed = r.summary.last.bed;
     const double given = r.summary.first.mass + mass_came_in(r.summary.first, r.summary.last);
     return fmt::format(
-        "the flow took {:.6g} m3 of it and of what it had left behind (its mass grew {:.3g} times), {:.3g} m deep at "
-        "most; left behind {:.6g} "
-        "m3; balance {:.1e}",
-        bed.eroded / r.density, given > 0.0 ? (given + bed.eroded) / given : 1.0, bed.deepest,
-        bed.deposited / r.density, budget(r.summary.first, r.summary.last).bed_error);
+        "the flow took {:.6g} m3 of it and of what it had left behind, in its own density (its mass grew {}{:.3g} "
+        "times), {:.3g} m "
+        "deep at most; left behind {:.6g} m3; balance {:.1e}",
+        bed.eroded / r.density, bed.deposited > 0.0 ? "at most " : "", given > 0.0 ? (given + bed.eroded) / given : 1.0,
+        bed.deepest, bed.deposited / r.density, budget(r.summary.first, r.summary.last).bed_error);
 }
 
 /// "9100 m3; by the tables 9100 m3, difference 1e-12; of their 12000 m3 2900 m3 had not come in".
