@@ -145,11 +145,14 @@ template <Curvature kCurvature, class Real>
             1.0 / flow.gravity * weight};
 }
 
-/// What grains add to a node's motion [m/s^2], and the weight of the node on the bed, over that at rest [1].
+/// What grains add to a node's motion.
 template <class Real>
 struct GrainForceOf {
-    FlatOf<Real> acceleration;
-    Real weight;
+    FlatOf<Real> acceleration;  ///< [m/s^2]
+    Real bend;                  ///< their weight on the bed, over that at rest [1]
+    Real share;                 ///< of grains [1]
+    /// The same of all that is at the node.
+    [[gnu::always_inline]] Real weight() const { return 1.0 + share * (bend - 1.0); }
 };
 
 /// As in the depth-averaged flow: the slope of the free surface instead of the ground's, for their share s of the mass; the
@@ -172,8 +175,28 @@ template <class Real>
     const Real xx = grains.k.xx - s, yy = grains.k.yy - s, xy = grains.k.xy;
     const FlatOf<Real> beyond{xx * by.thrust.x + xy * by.thrust.y + half * grains.change.x,
                               xy * by.thrust.x + yy * by.thrust.y + half * grains.change.y};
-    return {(Real{} - bears) * (s * by.drive + beyond) + s * viscous_acceleration(flow, k, Real{}),
-            1.0 + s * (by.weight - 1.0)};
+    return {(Real{} - bears) * (s * by.drive + beyond) + s * viscous_acceleration(flow, k, Real{}), by.weight, s};
+}
+
+/// 1 at margins, whose surface may be that of what lies behind; otherwise 0 (as the depth-averaged flow's grid update).
+[[gnu::always_inline]] inline double at_front(const Flow& flow, Index k, double) {
+    const std::uint8_t flags = flow.nodes.flags[k];
+    return (flags & kMargin) && (flags & (kWideX | kWideY)) != (kWideX | kWideY) ? 1.0 : 0.0;
+}
+[[gnu::always_inline]] inline Double4 at_front(const Flow&, Index, Double4) { return Double4{}; }
+
+/// `driven`, less what grains that climb a bank lose besides (SteepBed::climb).
+template <class Real>
+[[gnu::always_inline]] inline FlatOf<Real> climbed(const StructuredBody& body, Index k,
+                                                   const GrainForceOf<Real>& grains, double bears,
+                                                   const FlatOf<Real>& driven, double dt) {
+    const Flow& flow = body.flow;
+    const SteepBed<Real, Curvature::full, false> bed(flow, k);
+    const FlatOf<Real> surface = surface_at(flow, k, Real{});
+    FlatOf<Real> left = driven;
+    bed.climb(surface.x, surface.y, at_front(flow, k, Real{}), flow.gravity, flow.gravity * grains.bend, dt, left.x,
+              left.y);
+    return driven + bears * grains.share * (left - driven);
 }
 
 /// Velocity in the middle of a step, driven and braked by Coulomb friction: it makes what a bend does second order.

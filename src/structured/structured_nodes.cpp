@@ -120,7 +120,17 @@ template <class Real, class Law>
     const double dt = step.times.velocity_dt;
     const FlatOf<Real> all = (Real{} + 1.0 / dt) * (node.driven - node.before) + at_start.acceleration;
     return grain_force(step.body, k, ground, bears,
-                       midway(step.law, ground, node.across * at_start.weight, node.before, all, dt));
+                       midway(step.law, ground, node.across * at_start.weight(), node.before, all, dt));
+}
+
+/// What grains add to a velocity that is `driven` without them.
+template <class Real, class Law>
+[[gnu::always_inline]] inline FlatOf<Real> thrust_of(const NodeStep<Law>& step, Index k,
+                                                     const GrainForceOf<Real>& grains, double bears,
+                                                     const FlatOf<Real>& driven) {
+    const double dt = step.times.velocity_dt;
+    const FlatOf<Real> thrust = (Real{} + dt) * grains.acceleration;
+    return step.body.curved ? climbed(step.body, k, grains, bears, driven + thrust, dt) - driven : thrust;
 }
 
 /// A node without water, or four.
@@ -137,9 +147,9 @@ template <class Real, class Law>
     tally.weight += mass * weight;
     if (body.grains) {
         const GrainForceOf<Real> grains = force_of_grains(step, k, ground, node, 1.0);
-        const FlatOf<Real> thrust = dt * grains.acceleration;
+        const FlatOf<Real> thrust = thrust_of(step, k, grains, 1.0, node.driven);
         node.driven += thrust, tally.pressure += mass * thrust;
-        node.across *= grains.weight;
+        node.across *= grains.weight();
     }
     finish(step, k, ground, node);
 }
@@ -163,8 +173,8 @@ void move_wet(NodeStep<Law>& step, Index k) {
     impulse.weight += met.mass * vec(weight);
     if (body.grains) {
         const GrainForceOf<double> grains = force_of_grains(step, k, ground, node, 1.0 - met.support);
-        const FlatOf<double> thrust = dt * grains.acceleration;
-        node.driven += thrust, node.across *= grains.weight;
+        const FlatOf<double> thrust = thrust_of(step, k, grains, 1.0 - met.support, node.driven);
+        node.driven += thrust, node.across *= grains.weight();
         impulse.pressure += met.mass * vec(thrust);
     }
     if (has_water(body, k)) {  // drag knows what friction holds, and friction then what drag does
