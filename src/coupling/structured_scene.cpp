@@ -122,6 +122,21 @@ std::function<BedGeometry(const TileGrid&)> bed_under(const Scene& scene) {
 
 }  // namespace
 
+namespace {
+
+/// At the nodes of the scene.
+std::function<GroundBend(double x, double y)> bend_under(const Scene& scene) {
+    const auto grid = std::make_shared<const TileGrid>(scene.bed.geometry);
+    const auto bed = std::make_shared<const BedGeometry>(bed_under(scene)(*grid));
+    return [grid, bed](double x, double y) {
+        const GridGeometry& g = grid->geometry();
+        const Index k = grid->at(std::lround((x - g.x0) / g.cell), std::lround((y - g.y0) / g.cell));
+        return GroundBend{bed->hxx[k], bed->hxy[k], bed->hyy[k]};
+    };
+}
+
+}  // namespace
+
 StructuredScene structured_scene(const Scene& scene) {
     expect(scene.structure.has_value(), "a structured run has a structure");
     const Structure& of = *scene.structure;
@@ -232,6 +247,7 @@ TwoPhaseScene two_phase_scene(const Scene& scene) {
     };
     w.rain = on_nodes(of.rain), w.infiltration = on_nodes(of.infiltration);
     w.sides.fill(scene.sides == Sides::wall ? WaterSide::wall : WaterSide::open);
+    if (scene.curvature != Curvature::none && !scene.structure->unrolled) w.bend = bend_under(scene);
     w.friction = of.friction, w.viscosity = of.viscosity;
     w.gravity = scene.gravity;
     return s;

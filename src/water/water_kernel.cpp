@@ -265,6 +265,21 @@ void accumulate_sides(const WaterBody& body, const TilePart& part, const Stage& 
     }
 }
 
+/// Slope of the bed at a node.
+Vec2 bed_slope(const WaterBody& body, Index k) {
+    const double per = 0.5 / body.grid.cell();
+    return per *
+           Vec2(body.bed[k + 1] - body.bed[k - 1], body.bed[k + body.grid.stride()] - body.bed[k - body.grid.stride()]);
+}
+
+/// What turns water of depth h and velocity (u, v) along a bed that bends, over the density [m^2/s^2]: the part of v.H.v that
+/// does no work (shallow/grid_update_bed.h). Where water would fly, its weight at most.
+Vec2 turning_force(const WaterBody& body, Index k, double h, double u, double v) {
+    const GroundBend& bend = body.bend[k];
+    const double rises = u * u * bend.xx + 2.0 * u * v * bend.xy + v * v * bend.yy;
+    return -h * std::max(rises, -body.gravity) * body.normal_gravity[k] / body.gravity * bed_slope(body, k);
+}
+
 /// Runs a stage from fields on a tile: each(storage index, i, j, change) for its cells, and the half of what
 /// it records.
 template <class Each>
@@ -285,7 +300,13 @@ void run_stage(const WaterBody& body, const WaterFields& from, Index tile, doubl
     for (Index b = kHalo; b < part.rows; ++b)
         for (Index a = kHalo; a < part.columns; ++a) {
             const Index i = part.i0 + a - kHalo, j = part.j0 + b - kHalo;
-            const Change change = moves ? change_of(s, b * kRow + a, cells) : Change{0.0, 0.0, 0.0, Vec2(0, 0)};
+            const Index k = b * kRow + a;
+            Change change = moves ? change_of(s, k, cells) : Change{0.0, 0.0, 0.0, Vec2(0, 0)};
+            if (moves && body.bend) {
+                const Vec2 turned =
+                    dt * turning_force(body, body.grid.at(i, j), s.block.depth[k], s.block.u[k], s.block.v[k]);
+                change.qx += turned.x(), change.qy += turned.y(), change.pressure_force += turned;
+            }
             tile_ledger.ground += change.pressure_force;
             each(body.grid.at(i, j), i, j, change);
         }
@@ -297,13 +318,6 @@ void run_stage(const WaterBody& body, const WaterFields& from, Index tile, doubl
 struct Water {
     double h, qx, qy;
 };
-
-/// Slope of the bed at a node.
-Vec2 bed_slope(const WaterBody& body, Index k) {
-    const double per = 0.5 / body.grid.cell();
-    return per *
-           Vec2(body.bed[k + 1] - body.bed[k - 1], body.bed[k + body.grid.stride()] - body.bed[k - body.grid.stride()]);
-}
 
 /// Something slows water at the bed.
 bool brakes_of(const WaterBody& body) {
