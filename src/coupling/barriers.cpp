@@ -17,8 +17,8 @@
 namespace frana {
 namespace {
 
-constexpr double kClose =
-    2.0;  // cells: as far from a barrier run-up counts; columns stop one before it, where its ramp begins
+/// Cells: as far from a barrier run-up counts. Columns stop one before it, where its ramp begins.
+constexpr double kClose = 2.0;
 
 /// Elevations of the nodes, `height` higher.
 Raster lifted(Raster bed, double height) {
@@ -349,11 +349,11 @@ void ColumnWatch::sample_at(std::size_t n, const ColumnAt& column, const Vec2* f
     const bool was_over =
         found != over_.end() && std::find(found->second.begin(), found->second.end(), barrier) != found->second.end();
     const bool came_to_it = from != nullptr && !was_over;
-    const bool over = std::isfinite(top_of(surfaces_[n], column.place)) ||
-                      (came_to_it && crosses(surfaces_[n], boxes_[n], *from, column.place));
+    const bool on_it = std::isfinite(top_of(surfaces_[n], column.place)),
+               over = on_it || (came_to_it && crosses(surfaces_[n], boxes_[n], *from, column.place));
     BarrierLoad& load = loads_.barriers[n];
     // On the roof of a neighbour it does not run up this one.
-    if (!column.on_barrier || std::isfinite(top_of(surfaces_[n], column.place))) load.reach(column.surface);
+    if (on_it || !column.on_barrier) load.reach(column.surface);
     if (over && came_to_it) load.overtopped += column.volume;
     if (over && !was_over) over_[column.id].push_back(barrier);
 }
@@ -404,10 +404,13 @@ void ColumnWatch::sample_columns(const DepthAveraged& columns, double density) {
     for (Index p = 0; p < c.count(); ++p) {
         const Vec2 place(g.x0 + g.cell * c.x[p], g.y0 + g.cell * c.y[p]);
         if (!is_near(place)) continue;
-        const double adjacent = adjacent_surface(columns, place);
-        const Sample there = columns.at(place);
-        const bool on = std::isnan(adjacent);
-        sample({c.id[p], place, on ? there.elevation + there.depth : adjacent, c.mass[p] / density, on});
+        double surface = adjacent_surface(columns, place);
+        const bool on_barrier = std::isnan(surface);
+        if (on_barrier) {
+            const Sample there = columns.at(place);
+            surface = there.elevation + there.depth;
+        }
+        sample({c.id[p], place, surface, c.mass[p] / density, on_barrier});
     }
 }
 

@@ -120,18 +120,14 @@ std::function<BedGeometry(const TileGrid&)> bed_under(const Scene& scene) {
     };
 }
 
-}  // namespace
-
-namespace {
-
-/// At the nodes of the scene.
-std::function<GroundBend(double x, double y)> bend_under(const Scene& scene) {
-    const auto grid = std::make_shared<const TileGrid>(scene.bed.geometry);
-    const auto bed = std::make_shared<const BedGeometry>(bed_under(scene)(*grid));
+/// At the nodes of a scene of columns.
+std::function<BedCurvature(double x, double y)> curvature_of(const StructuredScene& scene) {
+    const auto grid = std::make_shared<const TileGrid>(scene.grid);
+    const auto bed = std::make_shared<const BedGeometry>(scene.bed(*grid));
     return [grid, bed](double x, double y) {
         const GridGeometry& g = grid->geometry();
         const Index k = grid->at(std::lround((x - g.x0) / g.cell), std::lround((y - g.y0) / g.cell));
-        return GroundBend{bed->hxx[k], bed->hxy[k], bed->hyy[k]};
+        return BedCurvature{bed->hxx[k], bed->hxy[k], bed->hyy[k]};
     };
 }
 
@@ -247,7 +243,7 @@ TwoPhaseScene two_phase_scene(const Scene& scene) {
     };
     w.rain = on_nodes(of.rain), w.infiltration = on_nodes(of.infiltration);
     w.sides.fill(scene.sides == Sides::wall ? WaterSide::wall : WaterSide::open);
-    if (scene.curvature != Curvature::none && !scene.structure->unrolled) w.bend = bend_under(scene);
+    if (s.columns.curved) w.curvature = curvature_of(s.columns);
     w.friction = of.friction, w.viscosity = of.viscosity;
     w.gravity = scene.gravity;
     return s;

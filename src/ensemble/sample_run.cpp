@@ -110,7 +110,7 @@ void measure(const Scene& scene, const EnsembleBase& base, const RunSummary& run
     result.footprint_area = static_cast<double>(result.peaks.pixels()) * cell * cell;
     result.max_depth = run.extremes.max_depth, result.max_speed = run.extremes.max_speed;
     const Status& last = run.last;
-    const double flowed = run.first.mass + (last.mass_in - run.first.mass_in) + taken_of_bed(scene, base.whole, peaks);
+    const double flowed = run.first.mass + mass_came_in(run.first, last) + taken_of_bed(scene, base.whole, peaks);
     result.volume = flowed / scene.density;
     result.left_share = flowed > 0.0 ? last.mass_left / flowed : 0.0;
     result.mass_error = budget(run.first, last).mass_error;

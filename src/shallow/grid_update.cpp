@@ -271,9 +271,7 @@ private:
         Node<double> node{};
         node.vx = nodes.before[k].x, node.vy = nodes.before[k].y;
         node.depth = nodes.depth[k], node.law_depth = nodes.law_depth[k], node.mass = nodes.mass[k];
-        // A node that is wide both ways may also be one of four, where at_front is 0.
-        node.at_front =
-            (nodes.flags[k] & kMargin) && (nodes.flags[k] & (kWideX | kWideY)) != (kWideX | kWideY) ? 1.0 : 0.0;
+        node.at_front = at_front(flow, k);
         if (!pressure_on_points_) {
             node.ex = surface_gradient(flow, k, 1, nodes.flags[k] & kWideX, flow.bed.slope_x[k]);
             node.ey = surface_gradient(flow, k, up, nodes.flags[k] & kWideY, flow.bed.slope_y[k]);
@@ -352,7 +350,7 @@ private:
         const double g = flow.gravity;
         const Real cosine = 1.0 / sqrt(1.0 + bed.bx * bed.bx + bed.by * bed.by);
         const Drive<Real> slope = bed.drive(n.ex, n.ey, cosine);
-        const Real high = height_around(flow, bed, n);
+        const Real high = bed.height_around(flow, n.depth, n.ex, n.ey);
         Drive<Real> driving = bed.driving(slope, g, high, n.vx, n.vy, cosine);
         Real gravity = bed.gravity(g, n.vx, n.vy);
         if constexpr (kCurvature != Curvature::none) {
@@ -368,12 +366,6 @@ private:
         const BedStateOf<Real> state{
             normal * cosine / kappa, max(n.law_depth * cosine, Real{} + 1e-9), kappa, cosine, g, flow.density};
         return braked(state, n, law, dx, dy, bed.bx, bed.by, max(Real{} + g, gravity), dt);
-    }
-
-    /// Depth a cell away, up its gradient: what pushes a node at the foot of a column is the column.
-    template <class Real, Curvature kCurvature, bool kLinear>
-    static Real height_around(const Flow& flow, const SteepBed<Real, kCurvature, kLinear>& bed, const Node<Real>& n) {
-        return n.depth + flow.cell * (abs(n.ex - bed.bx) + abs(n.ey - bed.by));
     }
 
     template <class Here>

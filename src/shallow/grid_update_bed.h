@@ -6,6 +6,13 @@
 
 namespace frana {
 
+/// 1 at margins, whose surface may be that of what lies behind; otherwise 0. A node that is wide both ways may also be one of
+/// four, where it is 0.
+inline double at_front(const Flow& flow, Index k) {
+    const std::uint8_t flags = flow.nodes.flags[k];
+    return (flags & kMargin) && (flags & (kWideX | kWideY)) != (kWideX | kWideY) ? 1.0 : 0.0;
+}
+
 /// Terrain of Fois et al. (2024): gentle slopes, no curvature. Driving a = -g grad(eta), normal force g.
 template <class Real>
 struct GentleBed {
@@ -97,6 +104,11 @@ struct SteepBed {
         const Real w = vx * bx + vy * by, up = min(w, max(Real{}, vx * smooth_x + vy * smooth_y));
         const Real held = flies * up / max(speed2 + w * w, Real{} + 1e-300);
         return {whole.x - lift * (slope.x - c2 * bx) + held * vx, whole.y - lift * (slope.y - c2 * by) + held * vy};
+    }
+    /// Depth a cell away, up its gradient: what pushes a node at the foot of a column is the column. `ex`, `ey`: slope of the
+    /// free surface.
+    Real height_around(const Flow& flow, Real depth, Real ex, Real ey) const {
+        return depth + flow.cell * (abs(ex - bx) + abs(ey - by));
     }
     /// grad(eta) / (1 + q), q = gradZ . grad(eta): a column that accelerates vertically with its bed. Where the surface
     /// slopes against the bed (q < 0) that would grow without bound and make energy of nothing (at q = -1 the column would

@@ -136,8 +136,7 @@ template <Curvature kCurvature, class Real>
     const SteepBed<Real, kCurvature, false> bed(flow, k);
     const Real one = Real{} + 1.0, cosine = 1.0 / sqrt(1.0 + bed.bx * bed.bx + bed.by * bed.by);
     const Drive<Real> slope = bed.drive(surface.x, surface.y, one), even = bed.drive(bed.bx, bed.by, one);
-    const Real high =
-        read<Real>(&flow.nodes.depth[k]) + flow.cell * (abs(surface.x - bed.bx) + abs(surface.y - bed.by));
+    const Real high = bed.height_around(flow, read<Real>(&flow.nodes.depth[k]), surface.x, surface.y);
     const Drive<Real> all = bed.driving(slope, flow.gravity, high, v.x, v.y, cosine);
     const Real weight = bed.gravity(flow.gravity, v.x, v.y);
     return {{all.x + ground.plane_gravity.x, all.y + ground.plane_gravity.y},
@@ -149,10 +148,10 @@ template <Curvature kCurvature, class Real>
 template <class Real>
 struct GrainForceOf {
     FlatOf<Real> acceleration;  ///< [m/s^2]
-    Real bend;                  ///< their weight on the bed, over that at rest [1]
+    Real own_weight;            ///< of grains on the bed, over that at rest [1]
     Real share;                 ///< of grains [1]
     /// The same of all that is at the node.
-    [[gnu::always_inline]] Real weight() const { return 1.0 + share * (bend - 1.0); }
+    [[gnu::always_inline]] Real weight() const { return 1.0 + share * (own_weight - 1.0); }
 };
 
 /// As in the depth-averaged flow: the slope of the free surface instead of the ground's, for their share s of the mass; the
@@ -178,12 +177,9 @@ template <class Real>
     return {(Real{} - bears) * (s * by.drive + beyond) + s * viscous_acceleration(flow, k, Real{}), by.weight, s};
 }
 
-/// 1 at margins, whose surface may be that of what lies behind; otherwise 0 (as the depth-averaged flow's grid update).
-[[gnu::always_inline]] inline double at_front(const Flow& flow, Index k, double) {
-    const std::uint8_t flags = flow.nodes.flags[k];
-    return (flags & kMargin) && (flags & (kWideX | kWideY)) != (kWideX | kWideY) ? 1.0 : 0.0;
-}
-[[gnu::always_inline]] inline Double4 at_front(const Flow&, Index, Double4) { return Double4{}; }
+[[gnu::always_inline]] inline double front_at(const Flow& flow, Index k, double) { return at_front(flow, k); }
+/// Of four nodes with wet ones around.
+[[gnu::always_inline]] inline Double4 front_at(const Flow&, Index, Double4) { return Double4{}; }
 
 /// `driven`, less what grains that climb a bank lose besides (SteepBed::climb).
 template <class Real>
@@ -194,8 +190,8 @@ template <class Real>
     const SteepBed<Real, Curvature::full, false> bed(flow, k);
     const FlatOf<Real> surface = surface_at(flow, k, Real{});
     FlatOf<Real> left = driven;
-    bed.climb(surface.x, surface.y, at_front(flow, k, Real{}), flow.gravity, flow.gravity * grains.bend, dt, left.x,
-              left.y);
+    bed.climb(surface.x, surface.y, front_at(flow, k, Real{}), flow.gravity, flow.gravity * grains.own_weight, dt,
+              left.x, left.y);
     return driven + bears * grains.share * (left - driven);
 }
 

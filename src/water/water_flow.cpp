@@ -88,11 +88,11 @@ WaterBody::WaterBody(const WaterScene& scene)
             const Vec2 slope = per * Vec2(bed[k + 1] - bed[k - 1], bed[k + grid.stride()] - bed[k - grid.stride()]);
             normal_gravity[k] = steep ? gravity / (1.0 + slope.squaredNorm()) : gravity;
         }
-    if (!scene.bend || !steep) return;
-    bend = LazyArray<GroundBend>(grid.size());
+    if (!scene.curvature || !steep) return;
+    curvature = LazyArray<BedCurvature>(grid.size());
     const GridGeometry& g = grid.geometry();
     for (Index j = 0; j < grid.ny(); ++j)
-        for (Index i = 0; i < grid.nx(); ++i) bend[grid.at(i, j)] = scene.bend(g.x(i), g.y(j));
+        for (Index i = 0; i < grid.nx(); ++i) curvature[grid.at(i, j)] = scene.curvature(g.x(i), g.y(j));
 }
 
 WaterFlow::WaterFlow(const WaterScene& scene)

@@ -23,8 +23,8 @@ struct WaterState {
     double depth = 0.0, u = 0.0, v = 0.0;
 };
 
-/// How the ground bends: second derivatives of its elevation [1/m].
-struct GroundBend {
+/// Curvature of the ground: second derivatives of its elevation [1/m].
+struct BedCurvature {
     double xx = 0.0, xy = 0.0, yy = 0.0;
 };
 
@@ -45,7 +45,7 @@ struct WaterScene {
     /// are printed. Both keep lakes at rest: each cell's slope of the surface is multiplied by its own value.
     bool steep = true;
     /// Of steep ground, smoothed: it turns water that flows over it. None: water keeps its velocity on the map over a bend.
-    std::function<GroundBend(double x, double y)> bend = {};
+    std::function<BedCurvature(double x, double y)> curvature = {};
     double theta = 2.0;  ///< of the limiter, 1 (minmod) to 2 (MC: of the smaller errors, face_flux.h)
     double cfl = 0.45;   ///< part of a cell that waves may pass in a step, below 1/2 [1]
     double film = 1e-6;  ///< water as shallow as this stays where it is [m]
@@ -100,7 +100,7 @@ struct WaterBody {
     LazyArray<double> bed;                 ///< elevation above `datum` [m], two nodes beyond the grid as well
     LazyArray<double> confined;            ///< depth of confined mass [m]: may be changed between steps
     LazyArray<double> normal_gravity;      ///< gravity across the ground [m/s^2]
-    LazyArray<GroundBend> bend;            ///< empty where none turns the water
+    LazyArray<BedCurvature> curvature;     ///< empty where none turns the water
     /// With WaterViscosity::solid_gradient, as confined: confined mass's share of the volume [1], its velocity [m/s].
     LazyArray<double> share, bound_x, bound_y;
     LazyArray<double> rain, infiltration;  ///< [m/s]; empty without

@@ -275,8 +275,8 @@ Vec2 bed_slope(const WaterBody& body, Index k) {
 /// What turns water of depth h and velocity (u, v) along a bed that bends, over the density [m^2/s^2]: the part of v.H.v that
 /// does no work (shallow/grid_update_bed.h). Where water would fly, its weight at most.
 Vec2 turning_force(const WaterBody& body, Index k, double h, double u, double v) {
-    const GroundBend& bend = body.bend[k];
-    const double rises = u * u * bend.xx + 2.0 * u * v * bend.xy + v * v * bend.yy;
+    const BedCurvature& of = body.curvature[k];
+    const double rises = u * u * of.xx + 2.0 * u * v * of.xy + v * v * of.yy;
     return -h * std::max(rises, -body.gravity) * body.normal_gravity[k] / body.gravity * bed_slope(body, k);
 }
 
@@ -302,7 +302,7 @@ void run_stage(const WaterBody& body, const WaterFields& from, Index tile, doubl
             const Index i = part.i0 + a - kHalo, j = part.j0 + b - kHalo;
             const Index k = b * kRow + a;
             Change change = moves ? change_of(s, k, cells) : Change{0.0, 0.0, 0.0, Vec2(0, 0)};
-            if (moves && body.bend) {
+            if (moves && body.curvature) {
                 const Vec2 turned =
                     dt * turning_force(body, body.grid.at(i, j), s.block.depth[k], s.block.u[k], s.block.v[k]);
                 change.qx += turned.x(), change.qy += turned.y(), change.pressure_force += turned;

@@ -118,7 +118,7 @@ private:
         const auto [least, most] = std::minmax_element(runs_.weights.begin(), runs_.weights.end());
         told.count = *least == *most ? static_cast<double>(runs_.weights.size()) : 0.0;
         told.effective = summary_.effective;
-        told.failed_share = runs_.failed_weight / (runs_.total + runs_.failed_weight);
+        told.failed_share = summary_.failed_share;
         told.start = base_.start;
         told.shares = plan_.quantiles;
         for (std::size_t f = 0; f < plan_.fields.size(); ++f) {

@@ -53,7 +53,8 @@ std::string bed_text(const RunRecord& r) {
     const Status::Bed& bed = r.summary.last.bed;
     const double given = r.summary.first.mass + mass_came_in(r.summary.first, r.summary.last);
     return fmt::format(
-        "the flow took {:.6g} m3 of it and of what it had left behind, in its own density (its mass grew {}{:.3g} "
+        "the flow took {:.6g} m3 of it and of what it had left behind, by the density of the flow (its mass grew "
+        "{}{:.3g} "
         "times), {:.3g} m "
         "deep at most; left behind {:.6g} m3; balance {:.1e}",
         bed.eroded / r.density, bed.deposited > 0.0 ? "at most " : "", given > 0.0 ? (given + bed.eroded) / given : 1.0,
@@ -311,7 +312,8 @@ std::string barriers(const RunRecord& r) {
         text += fmt::format(
             "\nRun-up is the highest top of what stood within two cells of a barrier, or on it. On a slope a thin flow "
             "counts "
-            "as high as the ground two cells above the barrier: `frana converge` tells. First contact is when the "
+            "as high as the ground two cells above the barrier; `frana converge` compares cells. First contact is when "
+            "the "
             "depth at a face first exceeds {:.4g} m "
             "(`output.footprint_depth`); of walls "
             "along lines and of meshes it is not known. Forces are "
