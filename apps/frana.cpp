@@ -242,8 +242,8 @@ void add_verify(CLI::App& app, VerifyOptions& options, Action& action) {
     command->add_flag("--coarse", options.coarse, "leave out grids that take half a minute or more");
     command
         ->add_option("--preset", options.preset,
-                     "default, paper, or float: the default with scheme.precision = \"float\"")
-        ->check(CLI::IsMember({"default", "paper", "float"}));
+                     "default, fast, paper, or float: the default with scheme.precision = \"float\"")
+        ->check(CLI::IsMember({"default", "fast", "paper", "float"}));
     command->add_option("--points", options.per_cell, "points a cell")->check(CLI::IsMember({1, 4, 9, 16}));
     command->add_option("--threads", options.threads, "threads; default OMP_NUM_THREADS")->check(CLI::Range(1, 4096));
     command->add_option("--json", options.json, "write the results as JSON");

@@ -99,7 +99,7 @@ end = 1
         "\"voellmy\", "
         "\"manning\", \"bingham\", \"pouliquen\"; did you mean \"voellmy\"?",
         "case.toml:11: scheme.cfl: found nan; expected a number above 0 and at most 1; give a finite number",
-        "case.toml:12: scheme.preset: found the text \"papr\"; expected one of \"default\", \"paper\"; did "
+        "case.toml:12: scheme.preset: found the text \"papr\"; expected one of \"default\", \"fast\", \"paper\"; did "
         "you mean "
         "\"paper\"?",
         "case.toml:14: output.every: found true; expected a number at least 1e-09 [s]; see `frana describe "

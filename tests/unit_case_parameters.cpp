@@ -32,7 +32,9 @@ TEST_CASE("describe selects by key, by table and by beginning", "[case][describe
     CHECK(describe("material").find("material.rheology.viscosity [Pa s]") != std::string::npos);
     CHECK(describe("material").find("scheme.cfl") == std::string::npos);
     CHECK(describe("xi").find("only with material.bed.law = voellmy") != std::string::npos);
-    CHECK(describe("scheme.cfl").find("default: 0.5; 0.25 with scheme.preset = \"paper\"") != std::string::npos);
+    CHECK(describe("scheme.cfl")
+              .find("default: 0.5; 1.0 with scheme.preset = \"fast\"; 0.25 with scheme.preset = \"paper\"") !=
+          std::string::npos);
     CHECK(describe("barrier").find("height above the bed") != std::string::npos);
     CHECK_THROWS_WITH(describe("grid.cel2"), Catch::Contains("did you mean grid.cell?"));
 }

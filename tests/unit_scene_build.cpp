@@ -348,7 +348,7 @@ TEST_CASE("resolved.toml gives the same scene as the case it came from", "[scene
 }
 
 TEST_CASE("The verification's presets are those of the case file", "[scene]") {
-    for (const char* preset : {"default", "paper"}) {
+    for (const char* preset : {"default", "fast", "paper"}) {
         const std::string text = std::string("[scheme]\npreset = \"") + preset + "\"\n" +
                                  with_release("outline = \"release.geojson\"\ndepth = 1.0");
         const Scene file = built(text, slope_gis()).scene;

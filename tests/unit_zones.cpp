@@ -9,6 +9,7 @@
 #include "analytic_scene.h"
 #include "catch.h"
 #include "checks/verify/placement.h"
+#include "friction_in_space.h"
 #include "observe/budget.h"
 #include "observe/memory_archive.h"
 #include "scene/build_scene.h"
@@ -32,30 +33,6 @@ Scene slide(const std::function<void(Scene&)>& edit = {}) {
         2);
     if (edit) edit(scene);
     return scene;
-}
-
-/// The scene's law in two places of the table; nodes take them in turn, so that no four have the same.
-std::shared_ptr<const Friction> twice(const Scene& scene) {
-    Friction friction;
-    const GridGeometry& g = scene.bed.geometry;
-    for (Index j = 0; j < g.ny; ++j)
-        for (Index i = 0; i < g.nx; ++i) friction.laws.place.push_back(static_cast<std::uint32_t>((i + j) % 2));
-    std::visit(
-        [&](const auto& law) {
-            friction.laws.laws = std::vector<std::decay_t<decltype(law)>>{law, law};
-        },
-        scene.bed_law);
-    return std::make_shared<const Friction>(friction);
-}
-
-/// A law for each node, by its place.
-template <class Law>
-std::shared_ptr<const Friction> by_place(const Scene& scene, const std::function<Law(double, double)>& law) {
-    std::vector<Law> laws;
-    const GridGeometry& g = scene.bed.geometry;
-    for (Index j = 0; j < g.ny; ++j)
-        for (Index i = 0; i < g.nx; ++i) laws.push_back(law(g.x(i), g.y(j)));
-    return std::make_shared<const Friction>(Friction{bed::law_map(laws), {"mu"}, {}});
 }
 
 std::shared_ptr<const Friction> rough_beyond(const Scene& scene, double x0) {
@@ -301,12 +278,12 @@ TEST_CASE("What is wrong with zones and rasters of friction is said in one sente
         problem_of(gis, std::string(kVoellmy) + "[material.rheology]\nlaw = \"newtonian\"\nviscosity = \"mu.tif\"\n"),
         "expected a number"));
     gis.rasters["mu.tif"].at(7, 5) = 0.5;
-    const std::string raster = "[material.bed]\nlaw = \"coulomb\"\nmu = \"mu.tif\"\n";
-    CHECK(has(problem_of(gis, raster + "[[stage]]\nmodel = \"solid_flow\"\nwindow = [1020, 2020, 1100, 2100]\n"),
-              "material.bed.mu: found a raster with a stage; expected one friction everywhere"));
-    CHECK(has(problem_of(gis, zone + "above = 10\nmu = 0.3\n[[stage]]\nmodel = \"solid_flow\"\n"
-                                     "window = [1020, 2020, 1100, 2100]\n"),
-              "material.zone.0: found a material.zone with a stage"));
+    const std::string mud = "[material.bed]\nlaw = \"bingham\"\nviscosity = 50\nyield_stress = 500\n",
+                      stage =
+                          "[[material.zone]]\nabove = 10\nyield_stress = 900\n[[stage]]\nmodel = \"solid_flow\"\n"
+                          "window = [1020, 2020, 1100, 2100]\n";
+    CHECK(has(problem_of(gis, mud + stage),
+              "material.bed.law: found \"bingham\" that differs in space, with a stage; expected one yield stress"));
     const std::string grains =
         "[material.bed]\nlaw = \"pouliquen\"\nmu_s = \"mu.tif\"\nmu_2 = 0.4\ngrain_diameter = 0.01\n";
     CHECK(has(problem_of(gis, grains), "found mu_2 = 0.4 at x 1037.5, y 2027.5; expected more than mu_s = 0.5 there"));

@@ -6,8 +6,8 @@
 
 namespace frana {
 
-/// The law's deceleration of a flow that is as deep and as fast as the points, and columns beside them, are there on the whole,
-/// over its normal acceleration. The lowest points are slower than the rest where material shears, and a bed law is one of the mean speed. Where
+/// The deceleration of a flow that is as deep and as fast as the points, and columns beside them, are there on the whole, over
+/// its normal acceleration, by the law of the nearest node. The lowest points are slower than the rest where material shears, and a bed law is one of the mean speed. Where
 /// no points stand in the map it is the friction of the slowest flow. THEORY.md (12).
 class BedFriction final : public SurfaceFriction {
 public:
@@ -21,8 +21,8 @@ private:
     const FlowMap& map_;
 };
 
-/// The friction coefficient of the scene's bed law at a speed along the bed [m/s] under a flow of that depth along gravity [m].
-/// `cosine`: of the bed's slope.
-double friction_of_flow(const Scene& scene, double depth, double cosine, double speed);
+/// The friction coefficient of the scene's bed law at a place on the map, under a flow with that depth along gravity [m] and
+/// speed along the bed [m/s]. The cosine is that of the bed's slope.
+double friction_of_flow(const Scene& scene, const Vec2& place, const FlowMap::Mean& flow);
 
 }  // namespace frana

@@ -120,13 +120,33 @@ double mean_friction(const Scene& scene, const FlowColumns& columns) {
     constexpr double kSteepest = 1.0;  // no sand stands steeper than 45 degrees
     double sum = 0.0, mass = 0.0;
     for (std::size_t k = 0; k < columns.count(); ++k) {
-        const double slope = std::hypot(columns.slope_x[k], columns.slope_y[k]), cosine = 1.0 / std::hypot(1.0, slope);
-        const double speed = std::sqrt(squared_speed(columns, k));
-        const double now = friction_of_flow(scene, columns.depth[k], cosine, speed);
+        const double slope = std::hypot(columns.slope_x[k], columns.slope_y[k]);
+        const FlowMap::Mean flow{columns.depth[k], std::sqrt(squared_speed(columns, k)), 1.0 / std::hypot(1.0, slope)};
+        const double now = friction_of_flow(scene, {columns.x[k], columns.y[k]}, flow);
         sum += columns.mass[k] * std::min(std::max(now, slope), kSteepest);
         mass += columns.mass[k];
     }
     return mass > 0.0 ? sum / mass : 0.0;
+}
+
+/// The largest friction at rest of a node in the window: where the bed brakes more than sand does inside, sand would shear above
+/// the bed, whatever friction a zone has.
+double largest_at_rest(const Scene& scene) {
+    if (!scene.friction) return friction_at_rest(scene.bed_law);
+    const std::array<Index, 4>& w = scene.solid->window;
+    double largest = 0.0;
+    for (Index j = w[1]; j <= w[3]; ++j)
+        for (Index i = w[0]; i <= w[2]; ++i) {
+            const auto node = static_cast<std::size_t>(j * scene.bed.geometry.nx + i);
+            largest = std::max(largest, friction_at_rest(scene.friction->laws.at(node)));
+        }
+    return largest;
+}
+
+/// Of sand that has the bed's friction.
+double friction_inside(const Scene& scene, const FlowColumns& columns) {
+    const double at_bed = scene.solid->whole_bed_law ? mean_friction(scene, columns) : scene.solid->bed_friction;
+    return std::max(largest_at_rest(scene), at_bed);
 }
 
 /// The speed that a column's whole weight, as shear at the bed, drives a fluid or mud to; `fall` at most, the speed that the
@@ -180,8 +200,7 @@ SolidStart choose_start(const Scene& scene, const FlowColumns& columns) {
     }
     const auto [low, high] = ground_of(scene);
     SolidStart start;
-    start.friction = std::max({friction_at_rest(scene.bed_law), scene.solid->bed_friction,
-                               scene.solid->whole_bed_law ? mean_friction(scene, columns) : 0.0});
+    start.friction = friction_inside(scene, columns);
     start.sound_speed = scene.solid->sound_speed.value_or(10.0 * std::max(fastest, 0.1));
     constexpr double kRoom = 8.0;    // cells above the ground at least
     constexpr double kSplash = 4.0;  // jets that a wall throws up rise to several times the energy of their flow

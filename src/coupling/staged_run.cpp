@@ -298,13 +298,18 @@ void StagedRun::remark_law(std::vector<std::string>& remarks) const {
     const SolidStage& stage = *scene_.solid;
     if (stage.of_bed)
         remarks.push_back(fmt::format(
-            "points in space are sand with an internal friction of {:.3g} degrees, {}; stage.law names another law",
+            "points in space are sand with an internal friction of {:.3g} degrees, {}{}; stage.law names another law",
             std::atan(start_.friction) / constants::kDegree,
             stage.whole_bed_law ? "the mean friction at the bed when the stage begins, and no less than the slope"
-                                : "as along the bed"));
-    const bool all =
-        std::holds_alternative<bed::None>(scene_.bed_law) || std::holds_alternative<bed::Coulomb>(scene_.bed_law);
-    if (!all && !start_.stuck && !stage.whole_bed_law)
+                                : "as along the bed",
+            scene_.friction ? ", or the largest friction at rest in the stage's window" : ""));
+    if (stage.whole_bed_law || start_.stuck) return;
+    if (scene_.friction)
+        remarks.push_back(fmt::format(
+            "points in space have a friction of {:.3g} at the bed, by stage.bed_friction, wherever they are; friction "
+            "that differs in space is that of columns alone",
+            stage.bed_friction));
+    if (hangs_on_speed(scene_.bed_law))
         remarks.push_back(fmt::format(
             "points in space feel of the bed law its Coulomb friction alone, {:.3g}: what grows with speed is missing "
             "there, so they are too fast rather than too slow",

@@ -144,6 +144,7 @@ StructuredScene structured_scene(const Scene& scene) {
     s.share = of.share;
     s.gravity = scene.gravity;
     s.bed_law = scene.bed_law;
+    if (scene.friction) s.laws = {scene.friction, &scene.friction->laws};
     s.hydrostatic = of.hydrostatic;
     s.scheme = scene.scheme;
     if (!of.unrolled) s.bed = bed_under(scene), s.curved = scene.curvature != Curvature::none;

@@ -148,9 +148,9 @@ void add_erodible_bed(std::vector<Combination>& table) {
                      {erodible},
                      "expected \"quadratic\", the shapes that share out a bed",
                      "remove it, or the erodible bed"});
-    table.push_back({is_not("scheme.preset", {"default"}),
+    table.push_back({is("scheme.preset", {"paper"}),
                      {erodible},
-                     "expected \"default\": particles of the other carry a depth that no mass can join",
+                     "expected \"default\" or \"fast\": particles of that preset carry a depth that no mass can join",
                      "remove it, or the erodible bed"});
     table.push_back({is_not("material.structure.law", {"none"}),
                      {erodible},
@@ -173,10 +173,11 @@ void add_deposits(std::vector<Combination>& table) {
                      {deposits},
                      "expected \"quadratic\", the shapes that share out a bed",
                      "remove it, or the deposition"});
-    table.push_back({is_not("scheme.preset", {"default"}),
-                     {deposits},
-                     "expected \"default\": particles of the other carry a depth that no bed can take over",
-                     "remove it, or the deposition"});
+    table.push_back(
+        {is("scheme.preset", {"paper"}),
+         {deposits},
+         "expected \"default\" or \"fast\": particles of that preset carry a depth that no bed can take over",
+         "remove it, or the deposition"});
     table.push_back({is_not("material.structure.law", {"none"}),
                      {deposits},
                      "expected \"none\": a mass that holds together, and water beside it, leave no bed behind",
@@ -198,10 +199,11 @@ void add_forest(std::vector<Combination>& table) {
                      {forest},
                      "expected \"quadratic\", the shapes that share out a bed",
                      "remove it, or the forest"});
-    table.push_back({is_not("scheme.preset", {"default"}),
-                     {forest},
-                     "expected \"default\": particles of the other carry a depth that no bed can take over",
-                     "remove it, or the forest"});
+    table.push_back(
+        {is("scheme.preset", {"paper"}),
+         {forest},
+         "expected \"default\" or \"fast\": particles of that preset carry a depth that no bed can take over",
+         "remove it, or the forest"});
     table.push_back({is_not("material.structure.law", {"none"}),
                      {forest},
                      "expected \"none\": a mass that holds together, and water beside it, leave nothing in a forest",
@@ -231,12 +233,12 @@ void add_schemes(std::vector<Combination>& table) {
                      {is("scheme.shape", {"linear"})},
                      "expected \"tpic\", \"flip\" or \"pic\", since apic here is the one of quadratic shapes",
                      "choose one of them, or scheme.shape = \"quadratic\""});
-    table.push_back({is("scheme.precision", {"float"}),
-                     {is_not("scheme.preset", {"default"}), is_not("scheme.shape", {"quadratic"}),
-                      is_not("scheme.transfer", {"tpic"})},
-                     "expected \"double\", since only the default kernels have the other",
-                     "remove it, or use the default preset, shape and transfer",
-                     " with another preset, shape or transfer than the default"});
+    table.push_back(
+        {is("scheme.precision", {"float"}),
+         {is("scheme.preset", {"paper"}), is_not("scheme.shape", {"quadratic"}), is_not("scheme.transfer", {"tpic"})},
+         "expected \"double\", since only the default kernels have the other",
+         "remove it, or use the default preset, shape and transfer",
+         " with another preset, shape or transfer than the default"});
 }
 
 /// What runs that go into space do not know of.
@@ -248,7 +250,7 @@ void add_space(std::vector<Combination>& table) {
                      " with a stage"});
     table.push_back({{"inflow", Are::tables},
                      {is("scheme.preset", {"paper"})},
-                     "expected \"default\": that preset has no rows that come in",
+                     "expected \"default\" or \"fast\": that preset has no rows that come in",
                      "remove one of them"});
     table.push_back({{"section", Are::tables},
                      {{"stage", Are::tables}},
@@ -281,23 +283,6 @@ std::string with_text(const Combination& row) {
     std::string text;
     for (const Values& values : row.with) text += (text.empty() ? "" : ", or ") + values.text();
     return text;
-}
-
-/// What has one friction everywhere.
-void add_zones(std::vector<Combination>& table) {
-    for (const Values& friction : {Values{"material.zone", Are::tables}, Values{"material.bed", Are::rasters},
-                                   is_not("material.bed.table", {"none"})}) {
-        const std::string otherwise = friction.are == Are::rasters ? "give a number, or remove" : "remove it, or";
-        table.push_back({friction,
-                         {{"stage", Are::tables}},
-                         "expected one friction everywhere: points in space know no zones",
-                         otherwise + " the stage",
-                         " with a stage"});
-        table.push_back({friction,
-                         {is_not("material.structure.law", {"none"})},
-                         "expected one friction everywhere: structured columns and water know no zones",
-                         otherwise + " the structure"});
-    }
 }
 
 }  // namespace
@@ -369,7 +354,6 @@ const std::vector<Combination>& combinations() {
         add_forest(table);
         add_space(table);
         add_late_releases(table);
-        add_zones(table);
         table.push_back({is_not("output.film", {"none"}),
                          {{"output.formats", Are::without, {"vtk"}}},
                          "expected the frames that a film is made of",

@@ -96,6 +96,12 @@ inline Parameter paper(Parameter parameter, Value value) {
     return parameter;
 }
 
+/// Another default under the preset "fast": longer steps and fewer particles.
+inline Parameter fast(Parameter parameter, Value value) {
+    parameter.otherwise.push_back({"scheme.preset", text("fast"), std::move(value)});
+    return parameter;
+}
+
 /// Used with these choices of `key` only, and needed with those of `needed_by`.
 inline Parameter with(Parameter parameter, const char* key, std::vector<std::string> used_by,
                       std::vector<std::string> needed_by = {}) {

@@ -226,8 +226,9 @@ void add_material(Table& table) {
 
 void add_scheme(Table& table) {
     const Range small = above_to(0.0, 1.0);
-    table.push_back(choice("scheme.preset", {"default", "paper"}, "default",
-                           "default; paper: the choices of Fois et al. (2024), single keys override them"));
+    table.push_back(choice("scheme.preset", {"default", "fast", "paper"}, "default",
+                           "default; fast: half of the steps, fewer particles; paper: the choices of Fois et al. "
+                           "(2024); single keys override them"));
     table.push_back(paper(choice("scheme.shape", {"linear", "quadratic", "cubic"}, "quadratic", "shape functions"),
                           text("linear")));
     table.push_back(paper(choice("scheme.transfer", {"tpic", "apic", "flip", "pic"}, "tpic",
@@ -238,7 +239,8 @@ void add_scheme(Table& table) {
                            "quadratic shapes, tpic and the default preset"));
     table.push_back(with(number("scheme.flip_ratio", "1", fraction, 0.99, "share of FLIP, the rest is PIC"),
                          "scheme.transfer", {"flip"}));
-    table.push_back(paper(number("scheme.cfl", "1", small, 0.5, "largest way in one time step, in cells"), 0.25));
+    table.push_back(
+        paper(fast(number("scheme.cfl", "1", small, 0.5, "largest way in one time step, in cells"), 1.0), 0.25));
     table.push_back(paper(number("scheme.filter", "1", fraction, 1.0, "strength of the surface filter"), 0.0));
     table.push_back(paper(
         number(
@@ -271,10 +273,12 @@ void add_scheme(Table& table) {
         flag("scheme.reset_domains", true, "give a strongly sheared particle a rectangular domain again"), false));
     table.push_back(
         flag("scheme.sleep", true, "skip material at rest until something stirs it; the results are the same"));
-    table.push_back(number("scheme.split_length", "cells", above_to(0.0, 2.0), 0.8,
-                           "edge of a particle's domain that makes it split"));
-    table.push_back(number("scheme.split_min_mass", "1", fraction, 0.02,
-                           "no split below this share of the largest mass at the start"));
+    table.push_back(fast(number("scheme.split_length", "cells", above_to(0.0, 2.0), 0.8,
+                                "edge of a particle's domain that makes it split"),
+                         1.0));
+    table.push_back(fast(number("scheme.split_min_mass", "1", fraction, 0.02,
+                                "no split below this share of the largest mass at the start"),
+                         0.1));
     table.push_back(paper(flag("scheme.mass_fit", true,
                                "fit the masses so that a lake, released below one still level, starts at exact rest"),
                           false));

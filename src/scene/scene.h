@@ -333,4 +333,7 @@ struct Scene {
     }
 };
 
+/// The bed law of the node nearest to a place.
+BedLaw bed_law_at(const Scene& scene, const Vec2& place);
+
 }  // namespace frana

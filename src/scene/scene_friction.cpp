@@ -331,14 +331,14 @@ void read_friction(const CaseFile& file, const GisReader& reader, double release
         BedLaw(scene.bed_law));
 }
 
-BedLaw bed_law_at(const Scene& scene, const Vec2& point) {
+BedLaw bed_law_at(const Scene& scene, const Vec2& place) {
     if (!scene.friction) return scene.bed_law;
     const GridGeometry& g = scene.bed.geometry;
     const auto node = [&](double at, Index count) {
         return static_cast<Index>(std::clamp(std::floor(at / g.cell + 0.5), 0.0, static_cast<double>(count - 1)));
     };
     return scene.friction->laws.at(
-        static_cast<std::size_t>(node(point.y() - g.y0, g.ny) * g.nx + node(point.x() - g.x0, g.nx)));
+        static_cast<std::size_t>(node(place.y() - g.y0, g.ny) * g.nx + node(place.x() - g.x0, g.nx)));
 }
 
 std::string friction_sentence(const FrictionPart& part) {

@@ -27,8 +27,6 @@ bool friction_differs(const CaseFile& file);
 /// scene that has its terrain and its laws. What is wrong with them goes to `problems`, remarks to the scene's log. Where
 /// nothing differs in space nothing happens.
 void read_friction(const CaseFile& file, const GisReader& reader, double released, Scene& scene, Problems& problems);
-/// The bed law of the node nearest to a place.
-BedLaw bed_law_at(const Scene& scene, const Vec2& point);
 
 /// Remarks on a terrain that may not be what was meant, on the material's numbers, and on releases that have their
 /// particles; they go to the scene's log.

@@ -94,7 +94,7 @@ private:
                           "expected one of both: what is stuck does not slide", "remove one of them");
         stage.split = case_.flag(prefix_ + "split");
         stage.bed_friction = number_or("bed_friction", friction_at_rest(scene_.bed_law));
-        stage.whole_bed_law = !given("bed_friction") && hangs_on_speed(scene_.bed_law);
+        stage.whole_bed_law = !given("bed_friction") && (scene_.friction || hangs_on_speed(scene_.bed_law));
         stage.cfl = number("cfl");
         read_transfer(stage);
         stage.profile = profile_of(case_.word(prefix_ + "profile"));
@@ -201,11 +201,6 @@ private:
         return viscous || !(friction_at_rest(scene_.bed_law) > 0.0) ? "fluid" : "of_bed";
     }
 
-    /// Laws that are more than a coefficient.
-    static bool hangs_on_speed(const BedLaw& law) {
-        return !std::holds_alternative<bed::None>(law) && !std::holds_alternative<bed::Coulomb>(law);
-    }
-
     /// A bed law that stands for mud that shears over its depth, where no rheology says otherwise.
     const bed::Bingham* mud_of_bed() const {
         if (given("law") || !std::holds_alternative<rheology::None>(scene_.rheology)) return nullptr;
@@ -214,6 +209,10 @@ private:
 
     SolidLaw law(SolidStage& stage) {
         const std::string law = law_of_case();
+        if (mud_of_bed() && scene_.friction)
+            problems_.add(case_.place("material.bed.law"), "found \"bingham\" that differs in space, with a stage",
+                          "expected one yield stress and viscosity: mud in space has the same everywhere",
+                          "name the stage's law, or remove what makes material.bed differ");
         if (law == "of_bed") {
             stage.of_bed = true;
             for (const char* name : {"yield_stress", "shear_modulus", "friction_angle_deg", "cohesion", "cone",

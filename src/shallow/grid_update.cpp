@@ -116,7 +116,7 @@ public:
             Node<double> node = prepared(flow, k);
             for (double* driving : {&node.ex, &node.ey, &node.acceleration_x, &node.acceleration_y}) *driving *= kFirm;
             const typename Terrain::template Bed<double> bed(flow, k);
-            const auto& law = law_at<double>(flow, k);
+            const auto& law = law_at<double>(law_, flow.laws, k);
             const Updated<double> after = updated(flow, bed, node, law, 1.0);
             held = after.vx == 0.0 && after.vy == 0.0 && rests_midway(flow, bed, node, law);
         });
@@ -145,15 +145,6 @@ private:
         parts_[tile] = work.total();
     }
 
-    /// The law of a node, or those of four in a row.
-    template <class Real>
-    decltype(auto) law_at(const Flow& flow, Index k) const {
-        if constexpr (std::is_same_v<Law, LawOfEachNode>)
-            return LawsHere<Real>(*flow.laws, k);
-        else
-            return (law_);
-    }
-
     /// The wave whose slope points shift by.
     template <class Real>
     static Real wave_at(const Flow& flow, Index k, const Node<Real>& node) {
@@ -180,8 +171,8 @@ private:
         if ((f[0] & f[1] & f[2] & f[3] & kInside) == kInside && !pressure_on_points_ && dt > 0.0 &&
             inside(flow, i, j)) {
             const Node<Double4> node = prepared_four(flow, k);
-            const auto after =
-                updated(flow, typename Terrain::template Bed<Double4>(flow, k), node, law_at<Double4>(flow, k), dt);
+            const auto after = updated(flow, typename Terrain::template Bed<Double4>(flow, k), node,
+                                       law_at<Double4>(law_, flow.laws, k), dt);
             add(flow, node, after, 1.0, work.four);
             Double4 out[4];
             transpose(after.vx, after.vy, node.depth, wave_at(flow, k, node), out);
@@ -212,8 +203,8 @@ private:
                     update_one(flow, k + n, four.at(n), dt, share[static_cast<std::size_t>(n)], sums);
             return;
         }
-        const auto after =
-            updated(flow, typename Terrain::template Bed<Double4>(flow, k), four, law_at<Double4>(flow, k), dt);
+        const auto after = updated(flow, typename Terrain::template Bed<Double4>(flow, k), four,
+                                   law_at<Double4>(law_, flow.laws, k), dt);
         for (int n = 0; n <= last; ++n)
             if (share[static_cast<std::size_t>(n)] > 0.0)
                 take(flow, k + n, four.at(n), after.at(n), share[static_cast<std::size_t>(n)], sums);
@@ -225,7 +216,8 @@ private:
 
     void update_one(Flow& flow, Index k, const Node<double>& node, double dt, double share, Sums<double>& sums) {
         const typename Terrain::template Bed<double> bed(flow, k);
-        take(flow, k, node, dt > 0.0 ? updated(flow, bed, node, law_at<double>(flow, k), dt) : resting_clock(bed, node),
+        take(flow, k, node,
+             dt > 0.0 ? updated(flow, bed, node, law_at<double>(law_, flow.laws, k), dt) : resting_clock(bed, node),
              share, sums);
     }
 

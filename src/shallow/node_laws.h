@@ -2,6 +2,8 @@
 // Bed laws that differ from node to node (THEORY.md, section 19), for kernels that take one node or four at once.
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "law/bed/law_map.h"
@@ -59,5 +61,14 @@ struct LawsHere<Double4> {
     return speed;
 }
 double speeds_after(const LawsHere<double>& here, const BedState& bed, double s0, double driven, double dt);
+
+/// What a kernel asks of its law at node k, or at four from there on. `laws` is there for LawOfEachNode.
+template <class Real, class Law>
+[[gnu::always_inline]] inline decltype(auto) law_at(const Law& law, const std::optional<NodeLaws>& laws, Index k) {
+    if constexpr (std::is_same_v<Law, LawOfEachNode>)
+        return LawsHere<Real>(*laws, k);
+    else
+        return (law);
+}
 
 }  // namespace frana

@@ -45,7 +45,9 @@ StructuredBody::StructuredBody(const StructuredScene& scene)
       share(scene.share),
       gravity(scene.gravity),
       mapped(static_cast<bool>(scene.bed)),
-      curved(scene.bed && scene.curved) {}
+      curved(scene.bed && scene.curved) {
+    if (scene.laws) flow.laws.emplace(*scene.laws, grid);
+}
 
 StructuredFlow::StructuredFlow(const StructuredScene& scene)
     : body_(scene),

@@ -7,7 +7,7 @@
 
 #include "base/clock.h"
 #include "base/constants.h"
-#include "law/bed/laws.h"
+#include "law/bed/law_map.h"
 #include "law/free_water.h"
 #include "law/structured_law.h"
 #include "mpm/halving.h"
@@ -54,8 +54,9 @@ struct StructuredScene {
     bool curved = false;  ///< that bed bends, and grains feel it
     Scheme scheme;        ///< of the grains' surface and of splitting them
     BedLaw bed_law;
-    double confined = 0.0;  ///< share of the volume that is water within the structure [1]
-    double cfl = 0.4;       ///< fraction of a cell that sound and flow may pass in a step [1]
+    std::shared_ptr<const bed::LawMap> laws;  ///< of the nodes; nothing: bed_law everywhere
+    double confined = 0.0;                    ///< share of the volume that is water within the structure [1]
+    double cfl = 0.4;                         ///< fraction of a cell that sound and flow may pass in a step [1]
     std::vector<Obstacle> obstacles;
     StructuredSeeds points;
 };
@@ -150,7 +151,7 @@ struct StructuredBody {
     std::vector<StructuredTally> tallies;  ///< of the step, per tile of the work list
     std::vector<Obstacle> obstacles;
     Rankine rankine;
-    BedLaw bed_law;
+    BedLaw bed_law;  ///< where flow.laws has none
     double density, share, gravity;
     bool grains = false;     ///< some column is broken or has grains beside its structure
     bool has_exits = false;  ///< some node that was asked for has no ground

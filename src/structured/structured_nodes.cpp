@@ -48,6 +48,11 @@ struct NodeStep {
     StructuredTally tally;
     TallyOf<double> single;
     TallyOf<Double4> four;
+    /// At node k, or at four from there on.
+    template <class Real>
+    decltype(auto) law_at(Index k) const {
+        return frana::law_at<Real>(law, body.flow.laws, k);
+    }
     auto& of(double) { return single; }
     auto& of(Double4) { return four; }
 };
@@ -90,7 +95,7 @@ template <class Real, class Law>
     TallyOf<Real>& tally = step.of(Real{});
     const FlatOf<Real> free = body.obstacles.empty() ? node.driven : stopped(body, k, node.driven);
     const FlatOf<Real> left =
-        braked(step.law, body, ground, node.across, node.law_depth, node.before, free, step.times);
+        braked(step.template law_at<Real>(k), body, ground, node.across, node.law_depth, node.before, free, step.times);
     tally.friction += node.mass * (left - free);
     // By the velocity that is left: what rests under stress and friction loses nothing.
     tally.braked += node.mass * ground.along(free - left, left);
@@ -119,8 +124,9 @@ template <class Real, class Law>
     if (!step.body.curved) return at_start;
     const double dt = step.times.velocity_dt;
     const FlatOf<Real> all = (Real{} + 1.0 / dt) * (node.driven - node.before) + at_start.acceleration;
-    return grain_force(step.body, k, ground, bears,
-                       midway(step.law, ground, node.across * at_start.weight(), node.before, all, dt));
+    return grain_force(
+        step.body, k, ground, bears,
+        midway(step.template law_at<Real>(k), ground, node.across * at_start.weight(), node.before, all, dt));
 }
 
 /// What grains add to a velocity that is `driven` without them.
@@ -178,8 +184,8 @@ void move_wet(NodeStep<Law>& step, Index k) {
         impulse.pressure += met.mass * vec(thrust);
     }
     if (has_water(body, k)) {  // drag knows what friction holds, and friction then what drag does
-        const FlatOf<double> held =
-            braked(step.law, body, ground, node.across, met.depth, before, node.driven, {dt, 0.0});
+        const auto& law = step.template law_at<double>(k);
+        const FlatOf<double> held = braked(law, body, ground, node.across, met.depth, before, node.driven, {dt, 0.0});
         const Vec2 dragged = drag(body, k, met, vec(before), vec(held), dt, step.tally) - vec(held);
         node.driven += flat(dragged);
         impulse.water += met.mass * dragged;
@@ -241,14 +247,16 @@ void share_out(StructuredBody& body) {
 void move_nodes(StructuredBody& body, const StepTimes& times) {
     if (body.water) release_to_nodes(body);
     if (body.grains) share_out(body);
-    std::visit(
-        [&](const auto& law) {
-            if (body.water)
-                move_nodes_by<true>(law, body, times);
-            else
-                move_nodes_by<false>(law, body, times);
-        },
-        body.bed_law);
+    const auto move = [&](const auto& law) {
+        if (body.water)
+            move_nodes_by<true>(law, body, times);
+        else
+            move_nodes_by<false>(law, body, times);
+    };
+    if (body.flow.laws)
+        move(LawOfEachNode{});
+    else
+        std::visit(move, body.bed_law);
 }
 
 void sample_nodes(StructuredBody& body) {

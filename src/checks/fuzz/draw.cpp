@@ -126,7 +126,7 @@ std::uint64_t salted(std::uint64_t seed, std::uint64_t salt) {
 }
 
 constexpr std::uint64_t kModel = 1, kBits = 2, kLoose = 3, kInflow = 4, kLate = 5, kFriction = 6, kDeposition = 7,
-                        kSpring = 8, kForest = 9, kScene = 16;  // salts
+                        kSpring = 8, kForest = 9, kPreset = 10, kScene = 16;  // salts
 
 }  // namespace
 
@@ -160,6 +160,8 @@ Draft draw(std::uint64_t seed, std::uint64_t n) {
             if (deposition.chance(0.2)) draw_deposition(deposition, draft);
             Dice forest(salted(seed, kForest), n);
             if (forest.chance(0.15)) draw_forest(forest, draft);
+            Dice preset(salted(seed, kPreset), n);
+            if (!draft.has("scheme.preset") && preset.chance(0.2)) say(draft, "scheme.preset", "fast");
         }
     }
     draft.keys["time.end"] = "1.0e6";
@@ -202,6 +204,8 @@ Draft draw(Model model, std::uint64_t seed, std::uint64_t n) {
     draft.model = model;
     draft.claims.threads = threads, draft.claims.resumes = resumes;  // with threads the terrain is wide
     draw_other(dice, draft);
+    Dice friction(salted(seed, kFriction), n);
+    if (friction.chance(0.2)) draw_friction(friction, draft);
     draft.keys["time.end"] = "1.0e6";
     draft.keys["output.formats"] = "[\"vtk\"]";
     return draft;

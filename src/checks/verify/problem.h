@@ -14,9 +14,9 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  ///< a quant
 
 /// What a user may vary in a problem.
 struct Setup {
-    Index cells = 100;                      ///< along the problem's reference length
-    std::string preset = "default";         ///< "paper", or "float": the default with scheme.precision = "float"
-    int per_side = 2;                       ///< points a cell and direction
+    Index cells = 100;               ///< along the problem's reference length
+    std::string preset = "default";  ///< "fast", "paper", or "float": the default with scheme.precision = "float"
+    int per_side = 2;                ///< points a cell and direction
     std::function<void(Scene&)> edit = {};  ///< last word on the scene: a component switched off, another cfl
 };
 

@@ -89,10 +89,11 @@ void fill_cut(Scene& scene, const Function& depth, const Lattice& lattice) {
 void set_preset(Scene& scene, const std::string& preset) {
     scene.scheme.preset = preset == "float" ? "default" : preset;
     if (preset == "float") scene.scheme.precision = Precision::single;
+    Scheme& s = scene.scheme;
+    if (preset == "fast") s.cfl = 1.0, s.split_length = 1.0, s.split_min_mass = 0.1;
     if (preset != "paper") return;
     scene.terrain = TerrainModel::shallow;
     scene.curvature = Curvature::none;
-    Scheme& s = scene.scheme;
     s.shape = Shape::linear;
     s.transfer = Transfer::pic;
     s.cfl = 0.25;

@@ -21,4 +21,9 @@ inline double friction_at_rest(const BedLaw& law) {
     return std::visit([](const auto& chosen) { return chosen.friction_at_rest(); }, law);
 }
 
+/// Whether a law is more than a coefficient.
+inline bool hangs_on_speed(const BedLaw& law) {
+    return !std::holds_alternative<bed::None>(law) && !std::holds_alternative<bed::Coulomb>(law);
+}
+
 }  // namespace frana
