@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "catch.h"
 #include "checks/verify/body.h"
+#include "coupling/open_share.h"
 #include "coupling/staged_run.h"
 #include "coupling/walled_columns.h"
 #include "fresh_folder.h"
@@ -46,6 +47,12 @@ Scene channel(double height) {
     stage.law = solid::Fluid{};
     scene.solid = stage;
     return scene;
+}
+
+/// Whether a run remarks upon something.
+bool said(const Simulation& run, const std::string& part) {
+    const std::vector<std::string> all = run.remarks();
+    return std::any_of(all.begin(), all.end(), [&](const std::string& one) { return one.find(part) != one.npos; });
 }
 
 /// A probe whose barrier of one face is pushed to the east as the test says.
@@ -95,6 +102,8 @@ TEST_CASE("Material that is let go where a barrier stands is on it, and gains no
         run_to(run, 0.02);
         const Status first = run.frame().status;
         run_to(run, 0.1);
+        CHECK(run.loads()->barriers.at(0).overtopped == 0.0);
+        CHECK(said(run, "came to be points on top of barriers"));
         const Status now = run.frame().status;
         const double gained =
             (now.kinetic - first.kinetic) + (now.potential - first.potential) + (now.stored - first.stored);
@@ -370,11 +379,13 @@ TEST_CASE("Barriers are watched on after the stage in space, and taken up again"
     StagedRun straight(scene);
     while (straight.status().time < 0.2) straight.advance(0.2);
     REQUIRE(straight.loads()->barriers.at(0).overtopped == 0.0);
+    CHECK_FALSE(straight.loads()->measures);
     while (straight.status().time < 0.7) straight.advance(1.0);
     MemoryArchive kept;
     straight.serialize(kept);
     StagedRun resumed(scene, Start::resumed);
     resumed.serialize(kept.rewind());
+    CHECK_FALSE(resumed.loads()->measures);
     for (StagedRun* run : {&straight, &resumed})
         while (run->status().time < 1.0) run->advance(1.0);
     const BarrierLoad &a = straight.loads()->barriers.at(0), &b = resumed.loads()->barriers.at(0);
@@ -388,6 +399,109 @@ TEST_CASE("Barriers are watched on after the stage in space, and taken up again"
     REQUIRE(over > 0.5);
     // One at the wall's edge may be counted in another round, or in none yet.
     CHECK(a.overtopped == Approx(over).epsilon(0.05));
+}
+
+TEST_CASE("What columns do to a barrier outside of the stage's window is known, but not how hard", "[barrier]") {
+    Scene scene = channel(0.2);
+    scene.solid->window = {0, 0, 16, 8};  // to x = 8
+    scene.solid->closed = {true, true, false, true};
+    StagedRun run(scene);
+    run_to(run, 1.0);
+    const BarrierLoad& load = run.loads()->barriers.at(0);
+    CHECK(load.faces.empty());
+    CHECK(run.frame().faces.empty());
+    CHECK(load.run_up > 2.2);
+    CHECK(load.overtopped > 0.2);
+    CHECK_FALSE(said(run, "stand in stage.window"));
+}
+
+TEST_CASE("A barrier that stands in the stage's window in part has forces of that part, and the run says so",
+          "[barrier]") {
+    Scene scene = channel(4.0);
+    scene.barriers[0].outline = rectangle_of(10.0, 1.0, 12.0, 3.0);
+    scene.solid->window = {0, 0, 22, 8};  // to x = 11.25: 4.5 of its 8 m of sides
+    scene.solid->closed = {true, true, false, true};
+    StagedRun run(scene);
+    CHECK(said(run, "wall: 56 % of it stand in stage.window"));
+    CHECK_FALSE(run.loads()->barriers.at(0).faces.empty());
+}
+
+TEST_CASE("A stage that begins when the flow is at a barrier is remarked upon", "[barrier]") {
+    for (const double from : {0.1, 0.55}) {
+        Scene scene = channel(12.0);  // its front has 11 m/s at most, 6 m
+        scene.solid->from = from;
+        StagedRun run(scene);
+        run_to(run, 0.6);
+        CAPTURE(from);
+        CHECK(said(run, "material is at wall (") == (from > 0.4));
+        CHECK(run.loads()->barriers.at(0).overtopped == 0.0);
+    }
+}
+
+TEST_CASE("A point that is split counts once for what goes over a barrier", "[barrier]") {
+    SolidScene space;
+    space.gravity = Vec3::Zero();
+    space.density = 1000.0;
+    space.law = solid::Fluid{1e6, 0.0};
+    space.grid = {Vec3(0, 0, 0), 0.25, {21, 21, 21}};
+    space.surfaces = {Surface::barrier(Prism(rectangle_of(2.0, 1.0, 3.0, 4.0), 1.0))};
+    space.points.add(Vec3(1.8, 2.5, 1.5), Vec3(5.0, 0, 0), 2.0, 0.0);
+    space.points.add(Vec3(2.5, 2.5, 1.5), Vec3(0, 0, 0), 2.0, 0.0);  // above it from the start
+    Mpm3d flow(space);
+    BarrierWatch watch(scene_on(5, 5, 1.0, [](double, double) { return 0.0; }), flow, 0.1);
+    watch.note_start(flow);
+    CHECK(watch.loads().barriers.at(0).overtopped == 0.0);
+    while (flow.status().time < 0.1) flow.advance(0.1);
+    watch.inherit(1, 0);  // as if the second point were a half of the first
+    watch.sample(flow);
+    CHECK(watch.loads().barriers.at(0).overtopped == Approx(2.0 * 2.0 / space.density));
+    watch.inherit(2, 0);
+    watch.sample(flow);
+    CHECK(watch.loads().barriers.at(0).overtopped == Approx(2.0 * 2.0 / space.density));
+}
+
+// A wall takes half of what a node on its face stands for, and an eighth from one half a cell before it.
+TEST_CASE("Depth before a wall is that of what stands there, whatever the wall takes of a cell", "[barrier]") {
+    Scene scene = channel(4.0);
+    const GridGeometry& g = scene.bed.geometry;  // cells of 0.5 m
+    for (const double face : {10.0, 9.75}) {
+        scene.barriers[0].outline = rectangle_of(face, -1.0, 12.0, 5.0);
+        const std::vector<double> open = open_shares(scene);
+        const auto at = [&](double x) {
+            return open[static_cast<std::size_t>(4 * g.nx + std::lround((x - g.x0) / g.cell))];
+        };
+        CAPTURE(face);
+        CHECK(at(9.0) == 1.0);
+        CHECK(at(9.5) == Approx(face == 10.0 ? 1.0 : 0.875));
+        CHECK(at(10.0) == Approx(face == 10.0 ? 0.5 : 0.125));
+        CHECK(at(11.0) == 1.0);         // what is there stands on top
+        CHECK(at(0.0) == Approx(0.5));  // at the window's closed side, which is the terrain's wall
+        CHECK(open.front() == Approx(0.25));
+    }
+}
+
+TEST_CASE("Where points are no more, a barrier's table has no force, and none is the largest of what never came",
+          "[barrier]") {
+    const FreshFolder scratch;
+    std::vector<BarrierSummary> summaries;
+    Barriers table(scratch.path(), {{"dam", {}}}, summaries);
+    Pushed probe;
+    probe.state.barriers[0].run_up = 3.0;
+    Status now;
+    table.step(now, probe);
+    now.time = 0.1;
+    table.step(now, probe);
+    probe.state.measures = false;
+    now.time = 0.2;
+    table.step(now, probe);
+    table.observe({});
+    const Table read = read_table(scratch.path() / "barriers" / "dam.csv");
+    REQUIRE(read.rows() == 2);
+    CHECK(read.column("fx").front() == 0.0);
+    CHECK(std::isnan(read.column("fx").back()));
+    CHECK(std::isnan(read.column("f0x").back()));
+    CHECK(read.column("run_up").back() == 3.0);
+    CHECK(summaries.at(0).blur == 0.0);
 }
 
 TEST_CASE("A barrier's mean force knows nothing of a short blow", "[barrier]") {

@@ -132,3 +132,15 @@ TEST_CASE("Particles show the pressure of the bed's curvature, as nodes do", "[c
               Approx(scene.density * (scene.gravity + bend) * frame.node("depth")->data[middle]).epsilon(1e-9));
     }
 }
+
+TEST_CASE("A place on a slope is asked for the speed along the bed, as frames have it", "[peaks]") {
+    constexpr double slope = 0.75;
+    Scene scene = scene_on(41, 41, 1.0, [](double x, double) { return 60.0 - slope * x; });
+    fill(scene, [](double x, double y) { return x > 5 && x < 35 && y > 5 && y < 35 ? 1.0 : 0.0; });
+    scene.particles.vx.assign(scene.particles.x.size(), 4.0);
+    DepthAveraged run(scene);
+    run_to(run, 0.05);
+    const Sample there = run.at({20.0, 20.0});
+    REQUIRE(there.velocity.x() > 3.0);
+    CHECK(there.speed == Approx(there.velocity.norm() * std::hypot(1.0, slope)).epsilon(1e-9));
+}

@@ -123,7 +123,7 @@ TEST_CASE("Sums through lines go on after a resume and on any number of threads,
 TEST_CASE("Beyond the terrain a line has no discharge", "[sections]") {
     class Everywhere final : public Probe {
     public:
-        Sample at(const Vec2&) const override { return {0.0, 2.0, {3.0, 0.0}}; }
+        Sample at(const Vec2&) const override { return {0.0, 2.0, {3.0, 0.0}, 3.0}; }
     };
     SectionLine line{"over the rim", {{10.0, 100.0}, {10.0, -60.0}}, false};
     CHECK(discharge_through(line, 0.5, Everywhere()) == Approx(2.0 * 3.0 * 160.0));

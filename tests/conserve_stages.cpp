@@ -522,6 +522,23 @@ TEST_CASE("So have runs whose ground brakes points by the whole bed law", "[stag
     take_up_again(scene, {0.3, 0.55}, 0.7, false);
 }
 
+// Those that came in last lie at the edge, where the bed law would go on to count the columns that they were.
+TEST_CASE("So have runs whose columns have all become points", "[stages][threads]") {
+    Scene scene = slide_through();
+    scene.solid->window = {12, 0, 30, 12};
+    scene.bed_law = bed::Voellmy{0.1, 200.0};
+    scene.solid->law = solid::DruckerPrager::of({}, std::atan(0.1), 0.0);
+    scene.solid->of_bed = scene.solid->whole_bed_law = true;
+    scene.solid->transfer = Transfer::flip, scene.solid->blending = 0.2;
+    scene.solid->closed = {false, true, true, true};
+    StagedRun run(scene);
+    while ((!run.points() || run.columns().status().particles > 0) && run.status().time < scene.end)
+        run.advance(scene.end);
+    const double gone = run.status().time + 0.01;
+    REQUIRE(gone < 1.5);
+    take_up_again(scene, {gone}, gone + 0.15, false);
+}
+
 TEST_CASE("So have runs whose points become columns, on their way when it stops, and whose 3D stage ends", "[stages]") {
     Scene scene = slide_through();
     scene.solid->until = 0.95;

@@ -23,6 +23,7 @@ struct FakeScript {
 class FakeSimulation : public Simulation {
 public:
     static constexpr double density = 1000.0, gravity = 9.81, height = 2.0, width = 3.0, u = 1.5, v = -0.5;
+    static constexpr double kSteep = 1.25;    ///< speed along the bed over that along the map
     static constexpr double threshold = 0.1;  ///< depth that counts as arrived [m]
 
     explicit FakeSimulation(FakeScript script = {}) : script_(std::move(script)) {
@@ -68,7 +69,9 @@ public:
             archive.array(name, *peak);
         if (archive.loading()) update();
     }
-    Sample at(const Vec2& p) const override { return {bed(p), depth(p, status_.time), Vec2(u, v)}; }
+    Sample at(const Vec2& p) const override {
+        return {bed(p), depth(p, status_.time), Vec2(u, v), kSteep * std::hypot(u, v)};
+    }
 
     std::shared_ptr<const void> give_frame_away() override { return {}; }
     Status frame_status() override { return status_; }

@@ -157,6 +157,21 @@ Figure3d two_pieces(bool columns) {
 
 }  // namespace
 
+TEST_CASE("The first pressure of a barrier is a mean since the output before, not since the start",
+          "[figures][space]") {
+    const FreshFolder folder;
+    const auto writer = make_barrier_writer(folder.path());
+    Frame frame;
+    frame.status.time = 1.0;
+    writer->observe(frame);  // columns alone: no barrier has faces
+    frame.number = 1, frame.status.time = 1.5;
+    frame.faces = wall();
+    writer->observe(frame);
+    double largest = 0.0;
+    for (const LoadedPatch& patch : read_barriers(folder.path(), 0)) largest = std::max(largest, patch.pressure);
+    CHECK(largest == Approx(kPush / (0.5 * 0.25)));  // in half a second on a quarter of a square metre
+}
+
 TEST_CASE("A barrier is put together again from the patches that a run writes", "[space]") {
     const std::vector<BarrierSolid> solids = read_wall();
     REQUIRE(solids.size() == 1);

@@ -85,13 +85,13 @@ TEST_CASE("Barriers keep the attributes of their features, with what hit them", 
     CHECK(std::string(houses[2]->GetFieldAsString("barrier")) == "house_3");
     CHECK(houses[0]->GetGeometryRef()->toPolygon()->get_Area() == Approx(64.0));
     CHECK(std::string(houses[1]->GetFieldAsString("use")) == "shed");
-    for (const char* name : {"peak_pressure_Pa", "peak_depth_m", "hit_s", "peak_force_N"})
+    for (const char* name : {"peak_dynamic_pressure_Pa", "peak_depth_m", "hit_s", "peak_force_N"})
         CHECK_FALSE(known(*houses[1], name));  // never reached
     for (const std::size_t n : {0, 2}) {
         CAPTURE(n);
         CHECK_FALSE(known(*houses[n], "peak_force_N"));  // columns take a barrier for ground
         CHECK(houses[n]->GetFieldAsDouble("peak_depth_m") > 0.1);
-        CHECK(houses[n]->GetFieldAsDouble("peak_pressure_Pa") > 1500.0);  // 1 m/s
+        CHECK(houses[n]->GetFieldAsDouble("peak_dynamic_pressure_Pa") > 1500.0);  // 1 m/s
     }
     // The third is 15 m nearer to the release.
     CHECK(houses[2]->GetFieldAsDouble("hit_s") < houses[0]->GetFieldAsDouble("hit_s"));
@@ -106,7 +106,7 @@ TEST_CASE("The report has the time of contact of houses that columns reach, and 
     CHECK_THAT(report, Contains("| house_2 | none | - | - |") && Contains("First contact is when the depth at a face"));
     CHECK_THAT(report, !Contains("| house_1 | none") && !Contains("| house_3 | none"));
     const std::string table = text_of(village.path() / "run" / "barriers.csv");
-    CHECK_THAT(table, Contains("barrier,first_contact [s],peak_force [N],peak_pressure [Pa]"));
+    CHECK_THAT(table, Contains("barrier,first_contact [s],peak_force [N],peak_dynamic_pressure [Pa]"));
     CHECK_THAT(table, Contains("house_2,,,,,,0,64,,,,,,,,\n"));
     CHECK(std::count(table.begin(), table.end(), '\n') == 4);
     // What columns do not tell is null in the record, and not a number that could be one.

@@ -128,6 +128,14 @@ TEST_CASE("Stages that cannot be are refused in one sentence", "[stages]") {
               "xmax, ymax] of "
               "at least 3 x 3 cells of 5 m within x 1000 to 1200, y 2000 to 2150"));
     CHECK(has(problem_of(two), "case.toml:15: stage.1: found no elevation at x 1197.5, y 2147.5"));
+    CHECK(has(problem_of(two + west + "top = -50\n"),
+              "stage.1.top: found -50 m; expected more than the window's lowest ground"));
+    CHECK(has(
+        problem_of(two + west + "[[barrier]]\noutline = \"wall.geojson\"\nheight = 2\nstuck = true\nfriction = 0.3\n"),
+        "barrier.0.friction: found with barrier.stuck = true; expected one of both"));
+    const Scene buried = scene_of("[[barrier]]\noutline = \"wall.geojson\"\ntop = -50\n");
+    CHECK(std::any_of(buried.log.begin(), buried.log.end(),
+                      [](const std::string& one) { return has(one, "barrier.0.top: found -50 m; expected more"); }));
     CHECK(
         has(problem_of("[[stage]]\nmodel = \"depth_averaged\"\nuntil = 25\n[[stage]]\nmodel = \"solid_flow\"\n" + west),
             "stage.0.until: found 25 s; expected a time before time.end = 20 s"));

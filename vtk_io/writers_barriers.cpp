@@ -42,7 +42,10 @@ public:
     std::string name() const override { return "vtk barriers"; }
 
     void observe(const Frame& frame) override {
-        if (frame.faces.empty()) return;
+        if (frame.faces.empty()) {  // points are still to come
+            time_ = frame.status.time;
+            return;
+        }
         const double span = frame.status.time - time_;
         const auto data = polydata_of(frame, span > 0.0 ? span : 0.0);
         add_heights(frame, data);

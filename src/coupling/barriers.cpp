@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "coupling/solid_scene.h"
 #include "particles/bed_points.h"
 #include "solid3d/face_ledger.h"
 #include "terrain/part_of.h"
@@ -24,18 +25,6 @@ constexpr double kClose = 2.0;
 Raster lifted(Raster bed, double height) {
     for (double& z : bed.values) z += height;
     return bed;
-}
-
-/// Of a shape without the room around it.
-std::pair<Vec3, Vec3> box_of(const Surface& barrier) {
-    if (barrier.prism) return barrier.prism->box();
-    const DistanceField& f = *barrier.shape;
-    Vec3 low = f.end(), high = f.origin;
-    for (Index k = 0; k < f.nodes[2]; ++k)
-        for (Index j = 0; j < f.nodes[1]; ++j)
-            for (Index i = 0; i < f.nodes[0]; ++i)
-                if (f.at(i, j, k) < 0.0) low = low.cwiseMin(f.place(i, j, k)), high = high.cwiseMax(f.place(i, j, k));
-    return {low, high};
 }
 
 bool near_box(const std::pair<Vec3, Vec3>& box, const Vec2& place, double margin) {
@@ -73,7 +62,7 @@ bool crosses(const Surface& barrier, const std::pair<Vec3, Vec3>& box, const Vec
 
 /// The middle of the footprint, on the bed.
 Vec3 middle_of(const Surface& barrier, const Raster& bed) {
-    const auto [low, high] = box_of(barrier);
+    const auto [low, high] = box_around(barrier);
     Vec3 middle = 0.5 * (low + high);
     const double z = bed_elevation(bed, middle.x(), middle.y());
     middle.z() = std::isfinite(z) ? z : high.z();
@@ -114,6 +103,17 @@ double top_near(const Surface& barrier, const Vec2& node, double cell) {
 }
 
 }  // namespace
+
+std::pair<Vec3, Vec3> box_around(const Surface& barrier) {
+    if (barrier.prism) return barrier.prism->box();
+    const DistanceField& f = *barrier.shape;
+    Vec3 low = f.end(), high = f.origin;
+    for (Index k = 0; k < f.nodes[2]; ++k)
+        for (Index j = 0; j < f.nodes[1]; ++j)
+            for (Index i = 0; i < f.nodes[0]; ++i)
+                if (f.at(i, j, k) < 0.0) low = low.cwiseMin(f.place(i, j, k)), high = high.cwiseMax(f.place(i, j, k));
+    return {low, high};
+}
 
 double top_of(const Surface& barrier, const Vec2& place) {
     if (barrier.shape) return barrier.shape->top_at(place);
@@ -178,7 +178,7 @@ std::vector<BarrierNode> barrier_nodes(const Scene& scene) {
     const GridGeometry& g = scene.bed.geometry;
     for (const Barrier& barrier : scene.barriers) {
         const Surface solid = surface_for_columns(barrier, scene);
-        const auto box = box_of(solid);
+        const auto box = box_around(solid);
         const NodeBox near = nodes_around(box, g);
         for (Index j = near.j0; j < near.j0 + near.ny; ++j)
             for (Index i = near.i0; i < near.i0 + near.nx; ++i) {
@@ -287,7 +287,7 @@ BarrierTiles::BarrierTiles(const GridGeometry& grid, const std::vector<std::pair
 ColumnWatch::ColumnWatch(const Scene& scene) : cell_(scene.bed.geometry.cell) {
     for (const Barrier& barrier : scene.barriers) {
         surfaces_.push_back(surface_for_columns(barrier, scene));
-        boxes_.push_back(box_of(surfaces_.back()));
+        boxes_.push_back(box_around(surfaces_.back()));
         BarrierLoad load;
         load.about = middle_of(surfaces_.back(), scene.bed);
         loads_.barriers.push_back(load);
@@ -435,21 +435,109 @@ void ColumnWatch::serialize(Archive& archive) {
     for (std::size_t k = 0; k + 1 < over.size(); k += 2) over_[over[k]].push_back(over[k + 1]);
 }
 
-BarrierWatch::BarrierWatch(const Scene& scene, const Mpm3d& flow, double blur) : density_(scene.density) {
+namespace {
+
+/// Of the way from one place to another the share within [xmin, ymin, xmax, ymax] [1].
+double share_inside(const Vec2& from, const Vec2& to, const std::array<double, 4>& window) {
+    double first = 0.0, last = 1.0;
+    for (int axis = 0; axis < 2; ++axis) {
+        const auto k = static_cast<std::size_t>(axis);
+        const double way = to[axis] - from[axis];
+        if (way == 0.0) {
+            if (from[axis] < window[k] || from[axis] > window[k + 2]) return 0.0;
+            continue;
+        }
+        const double a = (window[k] - from[axis]) / way, b = (window[k + 2] - from[axis]) / way;
+        first = std::max(first, std::min(a, b)), last = std::min(last, std::max(a, b));
+    }
+    return std::max(0.0, last - first);
+}
+
+/// Of a barrier's foot on the terrain the share that lies in the window of points: of its outline, of its line, or of the
+/// outline of a shape's box [1].
+double share_in_window(const Barrier& barrier, const std::pair<Vec3, Vec3>& box, const Scene& scene) {
+    const GridGeometry& g = scene.bed.geometry;
+    const std::array<double, 4> window = window_of(scene), terrain = {g.x0, g.y0, g.x_max(), g.y_max()};
+    const auto& [low, high] = box;
+    std::vector<std::vector<Vec2>> lines;
+    for (const Polygon& polygon : barrier.outline.parts)
+        for (std::vector<Vec2> ring : polygon.rings) ring.push_back(ring.front()), lines.push_back(std::move(ring));
+    if (!barrier.line.empty()) lines.push_back(barrier.line);
+    if (lines.empty())
+        lines = {{{low.x(), low.y()}, {high.x(), low.y()}, {high.x(), high.y()}, {low.x(), high.y()}, low.head<2>()}};
+    double length = 0.0, inside = 0.0;
+    for (const auto& line : lines)
+        for (std::size_t k = 1; k < line.size(); ++k) {
+            const double way = (line[k] - line[k - 1]).norm();
+            length += way * share_inside(line[k - 1], line[k], terrain);
+            inside += way * share_inside(line[k - 1], line[k], window);
+        }
+    return length > 0.0 ? inside / length : 0.0;
+}
+
+}  // namespace
+
+BarrierWatch::BarrierWatch(const Scene& scene, const Mpm3d& flow, double blur)
+    : density_(scene.density), ramp_(scene.bed.geometry.cell) {
     const std::vector<Surface>& surfaces = flow.body().surfaces;
     for (std::size_t s = 0; s < surfaces.size(); ++s)
         if (surfaces[s].is_barrier()) surfaces_.push_back(static_cast<int>(s));
     loads_.blur = blur;
-    for (const int s : surfaces_) {
-        const Surface& surface = surfaces[static_cast<std::size_t>(s)];
-        boxes_.push_back(box_of(surface));
+    for (std::size_t n = 0; n < surfaces_.size(); ++n) {
+        const Surface& surface = surfaces[static_cast<std::size_t>(surfaces_[n])];
+        boxes_.push_back(box_around(surface));
+        names_.push_back(surface.name);
+        inside_.push_back(scene.solid ? share_in_window(scene.barriers[n], boxes_.back(), scene) : 1.0);
         BarrierLoad load;
-        load.faces.resize(static_cast<std::size_t>(surface.faces()));
+        if (inside_.back() > 0.0) load.faces.resize(static_cast<std::size_t>(surface.faces()));
         load.about = middle_of(surface, scene.bed);
         loads_.barriers.push_back(load);
     }
-    over_.resize(surfaces_.size());
+    places_.resize(surfaces_.size());
+    at_start_.assign(surfaces_.size(), 0.0);
     due_.assign(surfaces_.size(), std::numeric_limits<double>::max());
+}
+
+/// Columns come no nearer than a cell of the terrain, where a barrier's ramp begins.
+void BarrierWatch::note_start(const Mpm3d& flow) {
+    const MaterialPoints& points = flow.body().points;
+    for (std::size_t n = 0; n < surfaces_.size(); ++n) {
+        const Surface& solid = flow.body().surfaces[static_cast<std::size_t>(surfaces_[n])];
+        for (Index p = 0; p < points.count(); ++p) {
+            const Vec3 x = flow.position(p);
+            if (!near_box(boxes_[n], x.head<2>(), 2.0 * ramp_)) continue;
+            const std::optional<Contact> met = nearest_face(solid, x, 2.0 * ramp_);
+            const double volume = points.mass[p] / density_, half = 0.5 * std::cbrt(volume);
+            if (std::isfinite(top_of(solid, x.head<2>())) || (met && met->distance <= ramp_ + half))
+                at_start_[n] += volume;
+        }
+    }
+    sample(flow);
+}
+
+std::vector<std::string> BarrierWatch::remarks(double from) const {
+    std::vector<std::string> all;
+    std::string late;
+    for (std::size_t n = 0; n < names_.size(); ++n) {
+        if (from > 0.0 && at_start_[n] > 0.0)
+            late += fmt::format("{}{} ({:.3g} m3)", late.empty() ? "" : ", ", names_[n], at_start_[n]);
+        if (inside_[n] > 0.0 && inside_[n] < 0.99)
+            all.push_back(
+                fmt::format("{}: {:.0f} % of it stand in stage.window; forces are those on that part; expected all of "
+                            "it, if the force on the whole is asked for",
+                            names_[n], 100.0 * inside_[n]));
+    }
+    if (!late.empty())
+        all.push_back(fmt::format(
+            "barriers: material is at {} as points begin, at {:.6g} s; first contact and the first forces are of that "
+            "moment; expected a stage that begins before the flow is there",
+            late, from));
+    if (placed_ > 0.0)
+        all.push_back(
+            fmt::format("barriers: {:.4g} m3 came to be points on top of barriers; they fall from there, and do not "
+                        "count as gone over",
+                        placed_));
+    return all;
 }
 
 void BarrierWatch::accumulate_loads(const Mpm3d& flow) {
@@ -499,16 +587,32 @@ void BarrierWatch::sample(const Mpm3d& flow) {
             const Vec3 x = flow.position(p);
             if (!stands_near(solid, boxes_[n], x, kClose * cell, cell)) continue;
             reached_.add(x.z(), flow.body().points.mass[static_cast<std::size_t>(p)]);
-            const auto id = static_cast<std::size_t>(flow.body().points.id[p]);
-            if (over_[n].size() <= id) over_[n].resize(id + 1, 0);
-            if (over_[n][id]) continue;
-            const double top = top_of(solid, x.head<2>());
-            if (!std::isfinite(top) || x.z() < top - cell) continue;  // beside it, or below what it spans
-            over_[n][id] = 1;
-            load.overtopped += flow.body().points.mass[p] / density_;
+            std::uint8_t& place = place_of(n, flow.body().points.id[p]);
+            if (place == over) continue;
+            const double top = top_of(solid, x.head<2>()), volume = flow.body().points.mass[p] / density_;
+            if (!std::isfinite(top) || x.z() < top - cell) {  // beside it, or below what it spans
+                place = beside;
+                continue;
+            }
+            (place == beside ? load.overtopped : placed_) += volume;
+            place = over;
         }
         load.reach(reached_.level());
     }
+}
+
+std::uint8_t& BarrierWatch::place_of(std::size_t n, Index id) {
+    const auto at = static_cast<std::size_t>(id);
+    if (places_[n].size() <= at) places_[n].resize(at + 1, unknown);
+    return places_[n][at];
+}
+
+void BarrierWatch::inherit(Index child, Index parent) {
+    for (std::size_t n = 0; n < places_.size(); ++n)
+        if (static_cast<std::size_t>(parent) < places_[n].size()) {
+            const std::uint8_t place = place_of(n, parent);
+            place_of(n, child) = place;
+        }
 }
 
 void BarrierWatch::add(const BarrierLoads& before, const BarrierLoads& after) {
@@ -539,8 +643,10 @@ std::vector<PatchedFace> BarrierWatch::patched(const Mpm3d& flow) const {
 
 void BarrierWatch::serialize(Archive& archive) {
     const Archive::Part part(archive, "barriers");
-    for (std::size_t n = 0; n < over_.size(); ++n) {
-        archive.array("over_" + std::to_string(n), over_[n]);
+    archive.numbers("placed", {&placed_});
+    archive.array("at_start", at_start_);
+    for (std::size_t n = 0; n < places_.size(); ++n) {
+        archive.array("places_" + std::to_string(n), places_[n]);
         archive.numbers("sums_" + std::to_string(n), {&loads_.barriers[n].run_up, &loads_.barriers[n].overtopped});
         Index touched = loads_.barriers[n].touched ? 1 : 0;
         archive.number("touched_" + std::to_string(n), touched);

@@ -49,6 +49,9 @@ std::vector<std::string> remarks_on(const Footings& footings);
 /// A barrier of that scene as a 3D surface. Throws as solid_of().
 Surface surface_of(const Barrier& barrier, const Raster& bed, double cell);
 
+/// Lowest and highest corner of the box around a barrier; of a shape without the room around it [m].
+std::pair<Vec3, Vec3> box_around(const Surface& barrier);
+
 /// Elevation of a barrier's top at a place of the map; minus infinity beside it [m].
 double top_of(const Surface& barrier, const Vec2& place);
 
@@ -138,28 +141,43 @@ private:
 /// What 3D points do to barriers.
 class BarrierWatch {
 public:
-    /// Barriers are the surfaces of that kind of the flow's scene, in the order of `scene`.
+    /// Barriers are the surfaces of that kind of the flow's scene, in the order of `scene`. Of those outside of the stage's
+    /// window no force is known.
     BarrierWatch(const Scene& scene, const Mpm3d& flow, double blur);
+    /// Takes what is at the barriers as points begin.
+    void note_start(const Mpm3d& flow);
     /// Takes the impulses of the faces, and whether something has come to them.
     void accumulate_loads(const Mpm3d& flow);
-    /// Takes run-up, and what stands over the barriers.
+    /// A point was split: what is known of it holds for its half.
+    void inherit(Index child, Index parent);
+    /// Takes run-up, and what came over the barriers from beside them.
     void sample(const Mpm3d& flow);
-    /// Points have become columns again, of which `after` is the watch, `before` its loads before the last round.
+    /// There are no points any more: from now on no force is known.
+    void end() { loads_.measures = false; }
+    /// Columns beside the points, of which `after` is the watch, `before` its loads before the last round.
     void add(const BarrierLoads& before, const BarrierLoads& after);
     const BarrierLoads& loads() const { return loads_; }
+    /// Of what the forces are not, in a stage that begins at `from` [s].
+    std::vector<std::string> remarks(double from) const;
     /// The faces with what each of their patches got.
     std::vector<PatchedFace> patched(const Mpm3d& flow) const;
     void serialize(Archive& archive);
 
 private:
+    enum Place : std::uint8_t { unknown, beside, over };
     bool is_touched(std::size_t n, const Mpm3d& flow);
-    std::vector<int> surfaces_;                    ///< of each barrier
-    std::vector<std::pair<Vec3, Vec3>> boxes_;     ///< around each
-    std::vector<std::vector<std::uint8_t>> over_;  ///< per barrier, by number of the point: was over it
+    std::uint8_t& place_of(std::size_t n, Index id);
+    std::vector<int> surfaces_;                      ///< of each barrier
+    std::vector<std::pair<Vec3, Vec3>> boxes_;       ///< around each
+    std::vector<double> inside_;                     ///< share of each in the stage's window [1]
+    std::vector<std::string> names_;                 ///< of each
+    std::vector<std::vector<std::uint8_t>> places_;  ///< per barrier, by number of the point: where it was so far
+    std::vector<double> at_start_;                   ///< volume at each as points begin [m3]
     std::vector<double> due_;  ///< of each: when the first point comes to it, at the speed it came with [s]
     BarrierLoads loads_;
-    RunUp reached_;  ///< at one barrier at a time
-    double density_;
+    RunUp reached_;          ///< at one barrier at a time
+    double density_, ramp_;  ///< ramp: of a barrier as columns see it [m]
+    double placed_ = 0.0;    ///< of points that came to be on top of barriers [m3]
 };
 
 }  // namespace frana

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/open_share.h"
+
 namespace frana {
 
 FlowMap::FlowMap(const Scene& scene)
@@ -12,14 +14,12 @@ FlowMap::FlowMap(const Scene& scene)
       footprint_depth_(scene.output.footprint_depth),
       nodes_(static_cast<std::size_t>(grid_.size())),
       peaks_(static_cast<std::size_t>(grid_.size())) {
-    const auto share = [&](Index k, Index count) {
-        return scene.sides == Sides::wall && (k == 0 || k == count - 1) ? 0.5 : 1.0;
-    };
+    const std::vector<double> open = open_shares(scene);
     areas_.reserve(nodes_.size());
     steepening_.reserve(nodes_.size());
     for (Index j = 0; j < grid_.ny; ++j)
         for (Index i = 0; i < grid_.nx; ++i)
-            areas_.push_back(grid_.cell * grid_.cell * share(i, grid_.nx) * share(j, grid_.ny)),
+            areas_.push_back(grid_.cell * grid_.cell * open[static_cast<std::size_t>(j * grid_.nx + i)]),
                 steepening_.push_back(1.0 + bed_gradient(scene.bed, grid_.x(i), grid_.y(j)).squaredNorm());
     double volume = 0.0;
     for (std::size_t p = 0; p < scene.particles.x.size(); ++p) {
@@ -58,12 +58,14 @@ struct Around {
 
 Sample FlowMap::at(const Vec2& point) const {
     Sample sample;
-    Vec2 flux(0, 0);
+    Vec3 flux(0, 0, 0);
     Around(grid_, point.x(), point.y()).each([&](Index k, double w) {
         sample.depth += w * depth(k);
-        flux += w * depth(k) * velocity(k).head<2>();
+        flux += w * depth(k) * velocity(k);
     });
-    if (sample.depth > 0.0) sample.velocity = flux / sample.depth;
+    if (!(sample.depth > 0.0)) return sample;
+    const Vec3 mean = flux / sample.depth;
+    sample.velocity = mean.head<2>(), sample.speed = mean.norm();
     return sample;
 }
 
@@ -118,9 +120,10 @@ void FlowMap::sample(const Mpm3d& flow, double time) {
 void FlowMap::note_peaks(double time) {
     extent_ = {};
     for (Index k = 0; k < grid_.size(); ++k) {
-        const double h = depth(k);
-        if (!(h > 0.0)) continue;
-        const NodeState now{h, velocity(k).norm(), pressure(k), density_};
+        if (!(depth(k) > 0.0)) continue;
+        const auto at = static_cast<std::size_t>(k);
+        const double h = depth(k) + (adjacent_.empty() ? 0.0 : adjacent_[at].mass / (density_ * areas_[at]));
+        const NodeState now{h, velocity(k).norm(), density_ * gravity_ * h / steepening_[at], density_};
         peaks_[static_cast<std::size_t>(k)].note(now, time, footprint_depth_);
         extent_.note(now, footprint_depth_, areas_[static_cast<std::size_t>(k)],
                      (Vec2(grid_.x(k % grid_.nx), grid_.y(k / grid_.nx)) - centre_).norm());

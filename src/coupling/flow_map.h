@@ -67,7 +67,7 @@ private:
     GridGeometry grid_;
     double density_, gravity_, footprint_depth_;
     Vec2 centre_{0, 0};               ///< of the release [m]
-    std::vector<double> areas_;       ///< of the nodes' cells, half of one at a wall [m2]
+    std::vector<double> areas_;       ///< of the nodes' cells, without what walls and barriers take of them [m2]
     std::vector<double> steepening_;  ///< 1 + |grad Z|^2 at the nodes
     std::vector<Node> nodes_;
     std::vector<Node> adjacent_;          ///< of the columns beside; empty: none were ever told

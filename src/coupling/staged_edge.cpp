@@ -121,7 +121,7 @@ void StagedRun::show_columns() {
         std::vector<Mat2> gradients;
         const FlowColumns columns = columns_at_edge(gradients);
         points_->set_adjacent(ghosts_of(columns, gradients));
-        if (scene_.solid->whole_bed_law) map_.set_adjacent(columns);
+        map_.set_adjacent(columns);
     });
 }
 

@@ -147,8 +147,8 @@ void StagedRun::end_3d() {
     timed_("map", [&] {
         map_.sample(*points_, points_->status().time);
         if (!watch_) return;
-        begin_columns_watch();
-        watch_columns();
+        watch_->end();
+        sample_columns();
     });
 }
 

@@ -30,7 +30,11 @@ StagedRun::StagedRun(const Scene& scene, Start start)
       map_(scene),
       spray_(scene) {
     expect(scene.solid.has_value(), "a staged run has a stage in space");
-    if (!scene.barriers.empty()) mark_raised();
+    if (!scene.barriers.empty()) {
+        mark_raised();
+        columns_->note_parents();
+        columns_watch_.emplace(scene_);
+    }
     scene_.particles = {};
     status_ = columns_->status();
     if (start == Start::placed && scene.solid->from == 0.0)
@@ -40,7 +44,9 @@ StagedRun::StagedRun(const Scene& scene, Start start)
 /// One step of the model in charge: columns until their stage ends; then points; then, perhaps, columns.
 void StagedRun::advance(double until) {
     if (!points_) {
+        const double before = status_.time;
         columns_->advance(std::min(until, scene_.solid->from));
+        watch_columns(before, until);
         status_ = columns_->status();
         if (status_.time < scene_.solid->from) return;
         const std::vector<Mat2> domains = domains_of(columns_->flow().columns, scene_.bed.geometry.cell, scene_.scheme);
@@ -65,22 +71,21 @@ void StagedRun::advance(double until) {
     count();
 }
 
-/// After the stage: what columns do to barriers adds to what points did.
 void StagedRun::step_columns_alone(double until) {
     const double before = columns_->status().time;
     columns_->advance(until);
-    if (columns_watch_ && columns_watch_->is_due(*columns_, before, until)) timed_("map", [&] { watch_columns(); });
+    watch_columns(before, until);
 }
 
-void StagedRun::begin_columns_watch() {
-    columns_->note_parents();
-    columns_watch_.emplace(scene_);
+/// After a step of columns: what they do to barriers adds to what points do.
+void StagedRun::watch_columns(double before, double until) {
+    if (columns_watch_ && columns_watch_->is_due(*columns_, before, until)) timed_("map", [&] { sample_columns(); });
 }
 
-void StagedRun::watch_columns() {
+void StagedRun::sample_columns() {
     const BarrierLoads before = columns_watch_->loads();
     columns_watch_->sample_columns(*columns_, scene_.density);
-    watch_->add(before, columns_watch_->loads());
+    if (watch_) watch_->add(before, columns_watch_->loads());
 }
 
 /// Columns that are left go a step ahead of the points, so that what flows into the window is there when the points arrive
@@ -94,6 +99,8 @@ void StagedRun::step_points(double until) {
         convert_to_3d();
         if (!returning_.empty()) timed_("hand back", [&] { convert_to_2d(); });
     }
+    for (const Mpm3d::Birth& birth : points_->take_births())
+        if (watch_) watch_->inherit(birth.child, birth.parent);
     if (watch_) watch_->accumulate_loads(*points_);
     moved_ += points_->status().max_speed * points_->status().dt;
     sample(until);
@@ -112,17 +119,26 @@ void StagedRun::begin_3d(const std::function<FlowColumns(const Marks&)>& columns
         points_ = std::make_unique<Mpm3d>(space);
         points_->start_at(scene_.solid->from);
         points_->note_departed();
-        if (!scene_.barriers.empty()) watch_.emplace(scene_, *points_, start_.blur);
+        if (columns_watch_) begin_watch();
         at_edge_ = nodes_at_edge(scene_);
         columns_->open_exits(inside, true);
     });
     const Status& now = columns_->status();  // what they gave counts as left
     converted_.mass = now.mass_left - before.mass_left;
     converted_.energy = now.energy_left - before.energy_left;
+    converted_.lost = converted_.energy - points_->status().energy_given;
     for (std::size_t axis = 0; axis < 2; ++axis)
         converted_.momentum[axis] = now.momentum_left[axis] - before.momentum_left[axis];
     sample(points_->status().time);
     accumulate(columns_->status());
+}
+
+void StagedRun::begin_watch() {
+    watch_.emplace(scene_, *points_, start_.blur);
+    watch_->note_start(*points_);
+    BarrierLoads none;
+    none.barriers.resize(scene_.barriers.size());
+    watch_->add(none, columns_watch_->loads());
 }
 
 /// The ground comes first; it brakes by the bed law, where that hangs on speed.
@@ -171,9 +187,15 @@ SolidSeeds StagedRun::seeds_of_window(const FlowColumns& columns, const std::vec
 }
 
 void StagedRun::step_columns(double until) {
-    if (columns_->status().particles == 0) return points_->set_adjacent(GhostParticles{});
+    if (columns_->status().particles == 0) {
+        points_->set_adjacent(GhostParticles{});
+        map_.set_adjacent(FlowColumns{});
+        return;
+    }
     show_points();
+    const double before = columns_->status().time;
     columns_->advance(until);
+    watch_columns(before, until);
     pending_ = columns_->take_departed();
     for (const Departed& column : pending_) {
         converted_.mass += column.mass, converted_.mass_later += column.mass;
@@ -193,8 +215,11 @@ void StagedRun::convert_to_3d() {
         for (std::size_t k = 0; k < pending_.size(); ++k) columns.take(all, k);
         const SolidSeeds seeds =
             seeds_of_window(columns, points_->body().surfaces);  // may be refused, with all still here
-        pending_.clear();
+        const double given = points_->status().energy_given;
         points_->add(seeds);
+        for (const Departed& column : pending_) converted_.lost += column.energy;
+        converted_.lost -= points_->status().energy_given - given;
+        pending_.clear();
     });
 }
 
@@ -249,8 +274,9 @@ void StagedRun::accumulate(const Status& columns) {
     status_.kinetic += s.kinetic;
     status_.potential += s.potential + energy + energy_back;
     status_.stored = s.stored;
-    status_.in_3d = {s.friction, -s.contact_work, s.material, s.numerical() + returned_.lost, s.volume};
-    status_.dissipated += s.energy_given - s.kinetic - s.potential - s.stored - s.energy_left + returned_.lost;
+    const double lost = converted_.lost + returned_.lost;  // as columns became points, and points columns
+    status_.in_3d = {s.friction, -s.contact_work, s.material, s.numerical() + lost, s.volume};
+    status_.dissipated += s.energy_given - s.kinetic - s.potential - s.stored - s.energy_left + lost;
     status_.energy_left += s.energy_left - converted_.energy - energy_back - returned_.lost;
     status_.max_depth = std::max(columns.max_depth, map_.extent().max_depth);
     status_.max_speed = std::max(columns.max_speed, s.max_speed);
@@ -288,7 +314,10 @@ Sample StagedRun::at(const Vec2& point) const {
     if (!points_) return sample;
     const Sample more = map_.at(point);
     const double depth = sample.depth + more.depth;
-    if (depth > 0.0) sample.velocity = (sample.depth * sample.velocity + more.depth * more.velocity) / depth;
+    if (depth > 0.0) {
+        sample.velocity = (sample.depth * sample.velocity + more.depth * more.velocity) / depth;
+        sample.speed = (sample.depth * sample.speed + more.depth * more.speed) / depth;
+    }
     sample.depth = depth;
     return sample;
 }
@@ -340,9 +369,24 @@ void StagedRun::remark_cells(std::vector<std::string>& remarks) const {
             round_number_below(finest_needed_)));
 }
 
+/// Walls along a line that stand thicker than they were given.
+void StagedRun::remark_walls(std::vector<std::string>& remarks) const {
+    for (const Barrier& barrier : scene_.barriers) {
+        if (barrier.line.empty() || !barrier.thickness) continue;
+        const double least = least_wall_thickness(barrier.line, scene_.solid->cell);
+        if (*barrier.thickness < least)
+            remarks.push_back(fmt::format(
+                "{}: stands {:.3g} m thick, the least that cells of {:.3g} m hold apart; found thickness = {:.3g} m",
+                barrier.name, least, scene_.solid->cell, *barrier.thickness));
+    }
+}
+
 std::vector<std::string> StagedRun::remarks() const {
     std::vector<std::string> remarks = columns_->remarks();
     if (!points_) return remarks;
+    remark_walls(remarks);
+    if (watch_)
+        for (std::string& remark : watch_->remarks(scene_.solid->from)) remarks.push_back(std::move(remark));
     const SolidStatus& s = points_->status();
     constexpr double kRoundOff = 1e-12;
     const double density = scene_.density, rest = s.mass / density, gone = s.mass_left - returned_.mass;
@@ -409,22 +453,23 @@ void StagedRun::serialize(Archive& archive) {
         columns_->serialize(archive);
     }
     frana::serialize(archive, "status", status_);
-    archive.numbers("sums", {&converted_.mass, &converted_.energy, &converted_.mass_later, &converted_.momentum[0],
-                             &converted_.momentum[1], &returned_.mass, &returned_.lost, &returned_.raised, &moved_,
-                             &largest_mach_, &became_points_, &their_depth_, &finest_needed_});
+    archive.numbers(
+        "sums", {&converted_.mass, &converted_.energy, &converted_.lost, &converted_.mass_later,
+                 &converted_.momentum[0], &converted_.momentum[1], &returned_.mass, &returned_.lost, &returned_.raised,
+                 &moved_, &largest_mach_, &became_points_, &their_depth_, &finest_needed_});
     archive.number("pieces", apart_.pieces);
     archive.numbers("apart", {&apart_.apart, &apart_.alone, &apart_.most_apart, &apart_.most_apart_time});
     spray_.serialize(archive);
     timed_.serialize(archive);
     serialize_returning(archive);
+    if (columns_watch_) {
+        const Archive::Part part(archive, "columns_watch");
+        columns_watch_->serialize(archive);
+    }
     if (!points_) return;
     map_.serialize(archive);
     if (watch_) watch_->serialize(archive);
-    if (watch_ && ended_) {
-        if (archive.loading()) begin_columns_watch();
-        const Archive::Part part(archive, "after");
-        columns_watch_->serialize(archive);
-    }
+    if (watch_ && ended_) watch_->end();
     {
         const Archive::Part part(archive, "points");
         points_->serialize(archive);

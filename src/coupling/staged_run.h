@@ -58,6 +58,8 @@ private:
     /// What the columns gave away, as they recorded it.
     struct Converted {
         double mass = 0.0, energy = 0.0, mass_later = 0.0;
+        /// That points did not get: motion of what is set on barriers, or without `along_bed` up and down [J].
+        double lost = 0.0;
         std::array<double, 2> momentum{};
     };
 
@@ -70,14 +72,15 @@ private:
     using Marks = std::vector<std::uint8_t>;  ///< of nodes, 1 or 0
     void begin_3d(const std::function<FlowColumns(const Marks&)>& columns_at);
     SolidScene space_of_stage() const;
+    void begin_watch();
     void step_columns(double until);
     void step_points(double until);
     void convert_to_3d();
     void note_departed();
     void convert_to_2d();
     void end_3d();
-    void begin_columns_watch();
-    void watch_columns();
+    void watch_columns(double before, double until);
+    void sample_columns();
     void step_columns_alone(double until);
     Vec2 place_of_column(const DepartedPoint& point, const Vec2& to);
     std::optional<Vec2> nearest_before(const DepartedPoint& point, const Vec2& x,
@@ -96,6 +99,7 @@ private:
     void require_below_top(const FlowColumns& columns) const;
     void sample(double until);
     void find_pieces();
+    void remark_walls(std::vector<std::string>& remarks) const;
     void remark_law(std::vector<std::string>& remarks) const;
     void remark_cells(std::vector<std::string>& remarks) const;
     /// Of columns as they became points, mean by mass [m].
@@ -111,8 +115,8 @@ private:
     std::unique_ptr<Mpm3d> points_;
     SolidStart start_;
     FlowMap map_;
-    std::optional<BarrierWatch> watch_;         ///< when there are barriers
-    std::optional<ColumnWatch> columns_watch_;  ///< then, once the stage has ended
+    std::optional<BarrierWatch> watch_;         ///< when there are barriers, from the stage on
+    std::optional<ColumnWatch> columns_watch_;  ///< when there are, of columns before, beside and after it
     std::vector<Departed> pending_;             ///< columns that left into the window, ahead of the points' time
     std::vector<std::uint8_t>
         at_edge_;  ///< nodes in the window, and around its open sides as far as points feel columns

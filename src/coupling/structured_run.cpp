@@ -134,6 +134,7 @@ MovingMass StructuredRun::motion(const MotionQuery& query) const {
 Sample StructuredRun::at(const Vec2& point) const {
     Sample sample;
     StructuredMap::sample(flow().body(), water(), point, sample.depth, sample.velocity);
+    sample.speed = sample.velocity.norm();
     return sample;
 }
 

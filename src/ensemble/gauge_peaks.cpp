@@ -10,7 +10,7 @@ void GaugePeaks::step(const Status& now, const Probe& probe) {
         if (!(flow.depth > footprint_depth_)) continue;
         GaugePeak& peak = peaks_[k];
         peak.depth = std::max(peak.depth.value_or(0.0), flow.depth);
-        peak.speed = std::max(peak.speed.value_or(0.0), flow.velocity.norm());
+        peak.speed = std::max(peak.speed.value_or(0.0), flow.speed);
         if (!peak.arrival) peak.arrival = now.time;
     }
 }

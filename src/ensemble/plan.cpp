@@ -20,8 +20,6 @@
 namespace frana {
 namespace {
 
-using Kind = Distribution::Kind;
-
 int line_in(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
 
 class Reader {
@@ -195,7 +193,7 @@ void place_samples(EnsemblePlan& plan) {
         for (std::size_t k = 0; k < plan.vary.size(); ++k) {
             const Distribution& of = plan.vary[k].distribution;
             const std::vector<double>& years = plan.vary[k].return_periods;
-            if (!grid || of.kind != Kind::discrete) {
+            if (!grid || of.kind != Distribution::Kind::discrete) {
                 point.values.push_back(of.text(u[k]));
                 if (!years.empty()) point.return_period = years[of.choice(u[k])];
                 continue;

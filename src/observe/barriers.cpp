@@ -54,6 +54,10 @@ void Barriers::step(const Status& now, const Probe& probe) {
     if (!has_tables()) return step_without_forces(*loads);
     for (std::size_t n = 0; n < names_.size(); ++n) {
         const BarrierLoad& load = loads->barriers[n];
+        if (!loads->measures || load.faces.empty()) {
+            step_without_force(n, now.time, load);
+            continue;
+        }
         Watched& watched = watched_[n];
         BarrierSummary& summary = summaries_[n];
         std::vector<double> row(10), faces;
@@ -68,29 +72,41 @@ void Barriers::step(const Status& now, const Probe& probe) {
             faces.insert(faces.end(), {f[0], f[1], f[2], m[0], m[1], m[2]});
         }
         watched.before = load.faces;
-        const double mean = load.faces.empty() ? 0.0 : note_means(watched, all, loads->blur, summary.means);
+        const double mean = note_means(watched, all, loads->blur, summary.means);
         row = {now.time,  force[0],  force[1], force[2],    moment[0],
                moment[1], moment[2], mean,     load.run_up, load.overtopped};
         row.insert(row.end(), faces.begin(), faces.end());
-        if (load.faces.empty()) row = {now.time, load.run_up, load.overtopped};
         tables_[n].add(row);
         if (summary.first_contact < 0.0 && load.touched) summary.first_contact = now.time;
         if (mean > summary.peak_force) summary.peak_force = mean, summary.peak_force_time = now.time;
         summary.raw_peak_force = std::max(summary.raw_peak_force, force.head<2>().norm());
         summary.blur = loads->blur;
         summary.impulse = all.impulse;
-        summary.about = load.about;
-        summary.run_up = load.run_up;
-        summary.overtopped = load.overtopped;
+        take(n, load);
     }
 }
 
-void Barriers::step_without_forces(const BarrierLoads& loads) {
-    for (std::size_t n = 0; n < names_.size(); ++n) {
-        summaries_[n].about = loads.barriers[n].about;
-        summaries_[n].run_up = loads.barriers[n].run_up;
-        summaries_[n].overtopped = loads.barriers[n].overtopped;
+/// What is known of columns too.
+void Barriers::take(std::size_t n, const BarrierLoad& load) {
+    summaries_[n].about = load.about;
+    summaries_[n].run_up = load.run_up;
+    summaries_[n].overtopped = load.overtopped;
+}
+
+/// A row of a table where points are no more, or never are. Of a barrier that no point ever came to no force is known.
+void Barriers::step_without_force(std::size_t n, double time, const BarrierLoad& load) {
+    std::vector<double> row = {time, load.run_up, load.overtopped};
+    if (!load.faces.empty()) {
+        row.insert(row.begin() + 1, 7, TableWriter::empty);
+        row.resize(row.size() + 6 * load.faces.size(), TableWriter::empty);
     }
+    tables_[n].add(row);
+    if (!load.touched) summaries_[n].blur = 0.0;
+    take(n, load);
+}
+
+void Barriers::step_without_forces(const BarrierLoads& loads) {
+    for (std::size_t n = 0; n < names_.size(); ++n) take(n, loads.barriers[n]);
 }
 
 /// Keeps what means need, and the largest ones. Returns the horizontal force's over `blur`.

@@ -72,6 +72,8 @@ private:
     void begin(const BarrierLoads& loads);
     bool has_tables() const { return names_.size() <= kMostBarrierTables; }
     void step_without_forces(const BarrierLoads& loads);
+    void step_without_force(std::size_t n, double time, const BarrierLoad& load);
+    void take(std::size_t n, const BarrierLoad& load);
     void serialize_without_tables(Archive& archive);
     static double note_means(Watched& watched, const Received& now, double blur, std::vector<MeanForce>& means);
     static MeanForce mean_over(const Watched& watched, double window);

@@ -13,7 +13,7 @@ Gauges::Gauges(const std::filesystem::path& run_dir, std::vector<GaugePoint> gau
 void Gauges::step(const Status& now, const Probe& probe) {
     for (std::size_t i = 0; i < gauges_.size(); ++i) {
         const Sample flow = probe.at(gauges_[i].point);
-        tables_[i].add({now.time, flow.elevation, flow.depth, flow.elevation + flow.depth, flow.velocity.norm(),
+        tables_[i].add({now.time, flow.elevation, flow.depth, flow.elevation + flow.depth, flow.speed,
                         flow.velocity.x(), flow.velocity.y()});
     }
 }

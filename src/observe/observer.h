@@ -12,7 +12,8 @@ namespace frana {
 struct Sample {
     double elevation = 0.0;  ///< bed [m]
     double depth = 0.0;      ///< [m]
-    Vec2 velocity{0, 0};     ///< [m/s]
+    Vec2 velocity{0, 0};     ///< along the map [m/s]
+    double speed = 0.0;      ///< along the bed [m/s]
 };
 
 /// What material did to a face of a barrier since the start.
@@ -41,6 +42,7 @@ struct BarrierLoads {
     /// A time over which forces are to be averaged: a first contact is a blow as hard as sound is fast, which is
     /// artificial [s]. Zero before anything can load barriers.
     double blur = 0.0;
+    bool measures = true;               ///< forces are known now, where they ever are
     std::vector<BarrierLoad> barriers;  ///< in the order of the scene
 };
 

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "particles/bed_points.h"
 #include "scene/barriers_of_case.h"
 #include "scene/scene_parts.h"
 
@@ -82,6 +83,10 @@ public:
                           "correct it; an elevation is given by top");
         barrier.friction = case_.number(prefix_ + "friction");
         barrier.stuck = case_.flag(prefix_ + "stuck");
+        if (barrier.stuck && barrier.friction > 0.0)
+            problems_.add(case_.place(prefix_ + "friction"), "found with barrier.stuck = true",
+                          "expected one of both: what is stuck does not slide", "remove one of them");
+        remark_buried(barrier);
         barrier.windows = windows();
         remark_thin(barrier.outline);
         if (!case_.flag(prefix_ + "each")) return scene_.barriers.push_back(std::move(barrier));
@@ -93,6 +98,19 @@ private:
     std::array<double, 4> terrain_extent() const {
         return (scene_.wider ? scene_.wider->grid : scene_.bed.geometry).pixel_extent();
     }
+    /// A top that no ground of its outline is below. Erodible ground may free it later.
+    void remark_buried(const Barrier& barrier) {
+        if (!barrier.top || scene_.erodible || barrier.outline.parts.empty()) return;
+        double lowest = INFINITY;
+        for (const Polygon& polygon : barrier.outline.parts)
+            for (const auto& ring : polygon.rings)
+                for (const Vec2& p : ring) lowest = std::fmin(lowest, bed_elevation(scene_.bed, p.x(), p.y()));
+        if (!(*barrier.top <= lowest) || std::isinf(lowest)) return;
+        scene_.log.push_back(
+            fmt::format("{}: found {:.6g} m; expected more than the ground's {:.6g} m: nothing meets it",
+                        case_.place(prefix_ + "top"), *barrier.top, lowest));
+    }
+
     bool given(const char* name) const { return case_.given(prefix_ + name); }
     std::string place() const {
         return case_.place(prefix_ + (given("mesh") ? "mesh" : given("line") ? "line" : "outline"));

@@ -57,10 +57,18 @@ private:
                           "give a smaller cell, or a larger window");
         if (!stage.top) return;
         constexpr double kHighest = 10e3;  // above the ground: no avalanche rises so far [m]
-        double high = -INFINITY;
+        double low = INFINITY, high = -INFINITY;
         for (Index j = w[1]; j <= w[3]; ++j)
-            for (Index i = w[0]; i <= w[2]; ++i) high = std::fmax(high, scene_.bed.at(i, j));
-        if (!std::isfinite(high) || *stage.top <= high + kHighest) return;
+            for (Index i = w[0]; i <= w[2]; ++i) {
+                const double z = scene_.bed.at(i, j);
+                low = std::fmin(low, z), high = std::fmax(high, z);
+            }
+        if (!std::isfinite(high)) return;
+        if (!(*stage.top > low))
+            problems_.add(case_.place(prefix_ + "top"), fmt::format("found {:.6g} m", *stage.top),
+                          fmt::format("expected more than the window's lowest ground, {:.6g} m", low),
+                          "give an elevation a little above the highest that material reaches");
+        if (*stage.top <= high + kHighest) return;
         problems_.add(case_.place(prefix_ + "top"), fmt::format("found {:.6g} m", *stage.top),
                       fmt::format("expected at most {:.6g} m, 10 km above the window's ground", high + kHighest),
                       "give an elevation a little above the highest that material reaches");

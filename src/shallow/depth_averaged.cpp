@@ -361,26 +361,6 @@ void DepthAveraged::require_finite(const PointSums& sums) const {
         flow_.scheme.cfl));
 }
 
-Sample DepthAveraged::at(const Vec2& point) const {
-    const GridGeometry& g = flow_.grid.geometry();
-    // A point in the outer half pixel shows its rim.
-    const double u = std::clamp((point.x() - g.x0) / g.cell, 0.0, static_cast<double>(g.nx - 1));
-    const double v = std::clamp((point.y() - g.y0) / g.cell, 0.0, static_cast<double>(g.ny - 1));
-    Sample sample;
-    const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
-    const double fu = u - static_cast<double>(i), fv = v - static_cast<double>(j);
-    for (Index dj = 0; dj < 2; ++dj)
-        for (Index di = 0; di < 2; ++di) {
-            const double w = (di ? fu : 1.0 - fu) * (dj ? fv : 1.0 - fv);
-            const Index k = flow_.grid.at(i + di, j + dj);
-            sample.elevation += w * flow_.bed.z[k];
-            if (!flow_.is_in_reach(i + di, j + dj)) continue;
-            sample.depth += w * flow_.nodes.depth[k];
-            sample.velocity += w * Vec2(flow_.nodes.before[k].x, flow_.nodes.before[k].y);
-        }
-    return sample;
-}
-
 std::vector<double> DepthAveraged::passed() const {
     std::vector<double> volumes;
     if (!passages_) return volumes;

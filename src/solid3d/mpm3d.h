@@ -212,8 +212,14 @@ public:
     void set_adjacent(GhostParticles material);
     /// A point that left goes on like that, besides.
     void set_adjacent(const DepartedPoint& point);
-    /// From now on points that leave are noted.
+    /// From now on points that leave are noted, and those that a split makes.
     void note_departed() { notes_ = true; }
+    /// A number that a split gave, and that of the point whose half has it.
+    struct Birth {
+        Index child, parent;
+    };
+    /// Since the last call.
+    std::vector<Birth> take_births() { return std::exchange(births_, {}); }
     /// Those that left since the last call, step by step in the order of the tiles: the same for any number of threads.
     std::vector<DepartedPoint> take_departed() { return std::exchange(departed_, {}); }
     /// Between two steps, all points leave.
@@ -265,6 +271,7 @@ private:
     double density_, cfl_, sound_speed_, blending_, drift_ = 0.0;
     Index next_id_ = 0;
     std::vector<DepartedPoint> departed_;  ///< when they are noted
+    std::vector<Birth> births_;            ///< likewise
     bool notes_ = false;
     bool apic_, splits_;
 };

@@ -26,6 +26,7 @@ void Mpm3d::split() {
         body_.gone.push_back(0);
         q.each([&](Array& column) { column[other] = column[p]; });
         q.id[other] = next_id_++;
+        if (notes_) births_.push_back({q.id[other], q.id[p]});
         q.mass[p] = q.mass[other] = 0.5 * q.mass[p];
         q.rest_volume[p] = q.rest_volume[other] = 0.5 * q.rest_volume[p];
         const Vec3 faster = gradient(p) * (g.cell * s.way);

@@ -51,7 +51,7 @@ void draw_walls(Dice& dice, Draft& draft, const std::string& stage) {
     draft.keys["barrier#0.line"] = line_across(dice, g);
     say(draft, "barrier#0.height", g.cell * dice.decades(0.3, 5.0));
     if (dice.chance(0.3)) say(draft, "barrier#0.friction", dice.between(0.0, 1.0));
-    if (dice.chance(0.2)) draft.keys["barrier#0.stuck"] = "true";
+    if (dice.chance(0.2)) draft.keys["barrier#0.stuck"] = "true", draft.keys.erase("barrier#0.friction");
 }
 
 }  // namespace

@@ -124,10 +124,11 @@ void write_barrier_table(const std::filesystem::path& csv, const std::vector<Bar
                          const std::vector<BarrierHit>& hits) {
     expect(hits.size() == summaries.size(), "every barrier has a hit");
     std::string text =
-        "barrier,first_contact [s],peak_force [N],peak_pressure [Pa],peak_depth [m],run_up_elevation [m],overtopped "
+        "barrier,first_contact [s],peak_force [N],peak_dynamic_pressure [Pa],peak_depth [m],run_up_elevation "
+        "[m],overtopped "
         "[m3],area "
         "[m2]";
-    for (const char* side : kSides) text += fmt::format(",pressure_{0} [Pa],depth_{0} [m]", side);
+    for (const char* side : kSides) text += fmt::format(",dynamic_pressure_{0} [Pa],depth_{0} [m]", side);
     text += '\n';
     for (std::size_t n = 0; n < hits.size(); ++n) {
         const BarrierSummary& s = summaries[n];

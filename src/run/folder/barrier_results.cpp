@@ -34,10 +34,11 @@ std::vector<Named> results_on(const Polygon& polygon, const std::string& barrier
     Polygons one;
     one.parts = {polygon};
     const BarrierHit hit = hit_on(one, rasters);
-    std::vector<Named> results{{"barrier", barrier},        {"peak_force_N", force}, {"peak_pressure_Pa", hit.pressure},
-                               {"peak_depth_m", hit.depth}, {"hit_s", hit.time},     {"area_m2", hit.area}};
+    std::vector<Named> results{
+        {"barrier", barrier},        {"peak_force_N", force}, {"peak_dynamic_pressure_Pa", hit.pressure},
+        {"peak_depth_m", hit.depth}, {"hit_s", hit.time},     {"area_m2", hit.area}};
     for (std::size_t side = 0; side < kSides.size(); ++side) {
-        results.emplace_back(fmt::format("pressure_{}_Pa", kSides[side]), hit.side_pressure[side]);
+        results.emplace_back(fmt::format("dynamic_pressure_{}_Pa", kSides[side]), hit.side_pressure[side]);
         results.emplace_back(fmt::format("depth_{}_m", kSides[side]), hit.side_depth[side]);
     }
     return results;

@@ -59,7 +59,7 @@ Attributes attributes_of(const std::string& name, const PeaksThere& peaks) {
     return {{"name", name},
             {"peak_depth_m", peaks.depth},
             {"peak_speed_m_s", peaks.speed},
-            {"peak_pressure_Pa", peaks.pressure},
+            {"peak_dynamic_pressure_Pa", peaks.pressure},
             {"arrival_s", peaks.arrival}};
 }
 
