@@ -60,7 +60,7 @@ RunAndSurvey read_run_and_survey(const CompareOptions& options) {
         read_survey_files({options.survey, options.deposit, options.path, options.bed_change, options.bed_change_noise},
                           find_product(source.rasters, "peak_depth")->raster, read.warnings);
     read.comparison = compare_rasters(source.rasters, source.bed.values.empty() ? nullptr : &source.bed,
-                                      source.footprint_depth, survey);
+                                      source.footprint_depth, survey, source.start);
     source.survey = survey.footprint;
     source.runout_path = read.comparison.path;
     return read;

@@ -211,10 +211,20 @@ FigureSource read_finished_run(const fs::path& run_dir, std::vector<std::string>
     source.run_dir = run_dir;
     read_record(run_dir, source);
     source.rasters = read_rasters(run_dir);
+std::optional<Vec2> start_of_run(const fs::path& run_dir) {
+    const auto json = nlohmann::json::parse(text_of(run_dir / "run.json"), nullptr, false);
+    using namespace nlohmann::literals;
+    if (!json.is_object()) return std::nullopt;  // said elsewhere
+    const auto start = json.value("/results/start"_json_pointer, nlohmann::json());
+    if (!start.is_array() || start.size() != 2 || !start[0].is_number() || !start[1].is_number()) return std::nullopt;
+    return Vec2(start[0].get<double>(), start[1].get<double>());
+}
+
     read_bed(source, warnings);
     return source;
 }
 
+    source.start = start_of_run(run_dir);
 int figures_command(const FiguresOptions& options) {
     const auto interrupted = [&] {
         std::cerr << fmt::format(

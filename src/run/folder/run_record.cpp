@@ -10,6 +10,7 @@
 #include "base/version.h"
 #include "run/folder/run_page.h"
 #include "scene/case_file.h"
+#include "scene/flow_start.h"
 
 namespace frana {
 namespace {
@@ -133,6 +134,7 @@ Json results_json(const RunRecord& record) {
             {"footprint_area", record.footprint_area},
             {"footprint_depth", record.footprint_depth},
             {"flow_width", std::isfinite(record.flow_width) ? Json(record.flow_width) : Json(nullptr)},
+            {"start", record.start ? Json{record.start->x(), record.start->y()} : Json(nullptr)},
             {"final_max_depth", record.final_depth},
             {"peak_pressure", record.peak_pressure},
             {"peak_dynamic_pressure", record.peak_dynamic_pressure}};
@@ -165,6 +167,7 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     record.end = record.whole_end = scene.end;
     if (file.given("time.end")) record.whole_end = file.number("time.end");
     record.footprint_depth = scene.output.footprint_depth;
+    record.start = start_of_what_comes_in(scene);
     record.page = asks_for_page(file);
     record.warnings = scene.log;
     return record;
