@@ -271,7 +271,7 @@ void Loop::advance(double until) {
 std::string Loop::reason_to_stop() const {
     const Status& now = simulation_.status();
     const bool moved = now.step > summary_.first.step;  // a release that has not yet started is not at rest
-    if (now.time >= plan_.end) return "end";
+    if (now.time >= plan_.end) return plan_.cut_short ? "until" : "end";
     if (now.particles == 0 && !(now.mass > 0.0) && !simulation_.more_comes())
         return "left";  // free water may flow on alone
     if (plan_.stop_at_rest && moved && rest_.at_rest()) return "rest";

@@ -31,7 +31,7 @@ struct RunPlan {
 
 /// What happened, for run.json and the report.
 struct RunSummary {
-    /// "end", "rest", "interrupted", "left" (no material remains), "numerics" (numbers that are not finite) or "refused"
+    /// "end", "until" (its plan was cut short), "rest", "interrupted", "left" (no material remains), "numerics" (numbers that are not finite) or "refused"
     /// (what a stage or a larger terrain asks for on the way)
     std::string reason;
     std::exception_ptr failure;  ///< the NumericsError, or of a refusal the UserError

@@ -181,11 +181,15 @@ std::string motion_text(const RunSummary& s) {
 
 /// Whether a rule, or the end of the time, stopped what was still in motion.
 bool stopped_in_motion(const RunSummary& s) {
-    return (s.reason == "end" || s.reason == "rest") && s.motion.fastest > 0.0;
+    return (s.reason == "end" || s.reason == "until" || s.reason == "rest") && s.motion.fastest > 0.0;
 }
 
-std::string reason_text(const RunSummary& summary) {
+std::string reason_text(const RunRecord& record) {
+    const RunSummary& summary = record.summary;
     const bool moves = stopped_in_motion(summary);
+    if (summary.reason == "until")
+        return fmt::format("stopped by --until at {:.6g} of {:.6g} s; --resume goes on: {}", record.end,
+                           record.whole_end, moves ? motion_text(summary) : "nothing moves any more");
     if (summary.reason == "end")
         return moves ? "stopped by the rule time.end, the simulated time is over: " + motion_text(summary)
                      : "the simulated time is over, and nothing moves any more";
@@ -202,7 +206,7 @@ std::string reason_text(const RunSummary& summary) {
 
 /// Why the run ended, and what was in motion then.
 Json rest_json(const RunSummary& s) {
-    const bool by_rule = s.reason == "end" || s.reason == "rest";
+    const bool by_rule = s.reason == "end" || s.reason == "until" || s.reason == "rest";
     return {{"reason", !by_rule               ? s.reason
                        : stopped_in_motion(s) ? "stopped by the rule"
                                               : "at rest"},

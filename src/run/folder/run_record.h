@@ -76,7 +76,7 @@ struct RunRecord {
 RunRecord begin_record(const Scene& scene, const CaseFile& file);
 
 /// "the end of the simulated time", "interrupted", ... for people.
-std::string reason_text(const RunSummary& summary);
+std::string reason_text(const RunRecord& record);
 
 /// run.json as text: contract in the README; numbers in SI, with all their digits.
 std::string run_json(const RunRecord& record);
