@@ -31,7 +31,8 @@ std::vector<double> take(const std::vector<std::vector<EventRun>>& runs, Calibra
         const SurveyedEvent& event = found.plan.events[e];
         for (std::size_t k = 0; k < all.size(); ++k) {
             const EventRun& run = runs[e][k];
-            found.failed += !run.ended();
+            if (!run.ended() && found.failed == 0) found.first_failure = run.message.empty() ? run.reason : run.message;
+            found.failed += !run.ended(), found.not_at_rest += run.still_moves;
             found.seconds += run.seconds;
             found.fits[e].scores.push_back(run.scores);
             found.fits[e].log_likelihood.push_back(log_likelihood(run.scores, event.objective, event.errors));
@@ -102,7 +103,7 @@ void forget_calibration(const fs::path& dir) {
 /// Runs what is left, and writes what is found.
 Calibration calibrate(const CalibrateOptions& options, const CalibrationPlan& plan) {
     Calibration found{plan, Posterior(static_cast<Index>(plan.vary.size()), plan.seed),
-                      std::vector<EventFit>(plan.events.size()), 0, 0.0};
+                      std::vector<EventFit>(plan.events.size())};
     const Interrupt interrupt(Interrupt::Listen::signals);
     const EventRuns runs(plan, options.threads, interrupt);
     const RunLock lock(options.out);

@@ -122,7 +122,7 @@ void run_scene(const EnsemblePlan& plan, const EnsembleBase& base, const Scene& 
     steps.cell = scene.bed.geometry.cell;
     steps.rest_fraction = scene.rest_fraction;
     const RunSummary run = frana::run(*simulation, steps, observers, interrupt, progress);
-    result.reason = run.reason, result.message = run.failure_text;
+    result.reason = run.reason, result.message = run.failure_text, result.still_moves = run.still_moves();
     result.time = run.last.time, result.steps = run.steps;
     result.gauges = gauges.peaks();
     measure(scene, base, run, peaks, result);
@@ -148,7 +148,6 @@ EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, co
     base.whole = scene.wider ? scene.wider->grid : scene.bed.geometry;
     base.title = scene.title;
     base.footprint_depth = scene.output.footprint_depth;
-    base.stops_at_rest = scene.stop_at_rest;
     base.gauges = scene.gauges;
     base.barriers = scene.barriers;
     base.start = flow_start(scene);

@@ -48,6 +48,9 @@ struct RunSummary {
     std::vector<PhaseTime> output;  ///< wall time by observer, "frame": gathering what they look at, "checkpoint"
     std::string started, ended;     ///< wall clock, UTC, ISO 8601
 
+    /// The time was over before the mass had come to rest.
+    bool still_moves() const { return (reason == "end" || reason == "until") && motion.share() > 0.0; }
+
     double output_seconds() const;
     double output_share() const { return wall_seconds > 0.0 ? output_seconds() / wall_seconds : 0.0; }
 };
