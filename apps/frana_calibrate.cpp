@@ -16,6 +16,7 @@
 #include "run/ensemble/kept_rows.h"
 #include "run/ensemble/shard_store.h"
 #include "run/folder/input_sums.h"
+#include "run/folder/run_folder.h"
 #include "run/folder/run_lock.h"
 #include "scene/build_scene.h"
 #include "scene/case_file.h"
@@ -60,6 +61,15 @@ bool run_rounds(const EventRuns& runs, KeptRuns& kept, const CalibrateOptions& o
 std::string finished_mark(const fs::path& dir) {
     const auto json = nlohmann::json::parse(text_in(dir / "calibrate.json"), nullptr, false);
     return json.is_object() ? json.value("mark", "") : "";
+}
+
+/// Files that no calibration has left are not taken for one's own, nor removed.
+void require_room(const fs::path& dir) {
+    if (KeptRuns::are_in(dir)) return;
+    require_no_others(
+        dir, "calibrate.json",
+        {"runs.csv", "posterior.csv", "posterior.png", "report.md", "run.json", "predict.toml", "kept", "predict"},
+        "a calibration");
 }
 
 /// False when all is there already.
@@ -166,6 +176,7 @@ bool predicted(const fs::path& dir, const EnsemblePlan& maps) {
 
 int run_calibration(const CalibrateOptions& options) {
     const CalibrationPlan plan = read_calibration(options.file);
+    require_room(options.out);
     const bool calibrated = !something_to_do(options, plan);
     if (calibrated && (!plan.predict || predicted(options.out, *plan.predict))) {
         if (!options.quiet && options.progress.empty())

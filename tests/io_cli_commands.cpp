@@ -221,3 +221,8 @@ TEST_CASE("bench leaves with 2 and a sentence for numbers that cannot be", "[cli
     CHECK(scene.frana("bench --particles many").code == 2);
     CHECK_FALSE(fs::exists(scene.folder() / "b.json"));
 }
+    fs::copy(scene.folder() / "release.geojson", scene.folder() / "release.json");
+    const Outcome input = scene.frana("particles CASE --set release.0.outline=release.json --out release.json");
+    CHECK(input.code == 2);
+    CHECK_THAT(input.err, Contains("--out release.json: found a file that this command reads"));
+    CHECK(text_of(scene.folder() / "release.json") == text_of(scene.folder() / "release.geojson"));

@@ -141,6 +141,12 @@ std::string mark_of(const EnsemblePlan& plan) {
                        sum_of(mark_of_inputs(CaseFile::read(plan.case_file))));
 }
 
+bool has_runs_of(const fs::path& dir, const EnsemblePlan& plan) {
+    const std::vector<fs::path> files = row_files(dir);
+    for (const fs::path& file : files) require_rows_of(file, {"ensemble", mark_of(plan), ""});
+    return !files.empty();
+}
+
 ShardStore::ShardStore(fs::path folder, const EnsemblePlan& plan, const EnsembleBase& base)
     : folder_(std::move(folder)), plan_(plan), base_(base), rows_(text_in(folder_ / "runs.csv")) {
     if (rows_.empty()) rows_ = rows_of(plan, base).head();
