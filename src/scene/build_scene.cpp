@@ -55,6 +55,7 @@ public:
         require_room_for_all();
         problems_.throw_if_any();
         remark_on_releases(case_, built_.releases, scene_);
+        remark_on_fields(case_, scene_);
         cut_releases();
         return std::move(built_);
     }

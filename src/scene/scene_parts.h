@@ -35,6 +35,8 @@ void remark_on_material(const CaseFile& file, Scene& scene);
 void remark_on_releases(const CaseFile& file, const std::vector<ReleaseSummary>& releases, Scene& scene);
 /// A remark on the pixels without data where a release claims material.
 void remark_on_gaps(const Raster& field, const NodeMarks& claimed, const std::string& place,
+/// A remark on each field of the output that no frame of this case has.
+void remark_on_fields(const CaseFile& file, Scene& scene);
                     std::vector<std::string>& log);
 
 /// [[release]] number `i` of a scene that has its terrain, in the terms of the particle generation: depth vertical,
