@@ -11,6 +11,7 @@
 #include "base/atomic_file.h"
 #include "catch.h"
 #include "plane_case.h"
+#include "checks/verify/library.h"
 #include "scene/parameters.h"
 
 namespace fs = std::filesystem;
@@ -226,3 +227,19 @@ TEST_CASE("bench leaves with 2 and a sentence for numbers that cannot be", "[cli
     CHECK(input.code == 2);
     CHECK_THAT(input.err, Contains("--out release.json: found a file that this command reads"));
     CHECK(text_of(scene.folder() / "release.json") == text_of(scene.folder() / "release.geojson"));
+    const Outcome known = scene.frana("verify --list");
+    CHECK_THAT(known.out, Contains("energy_line        stands for energy_parabola, energy_hockey, energy_avaframe: "));
+    for (const char* alias : {"dam_obstacle ", "jaumann_shear ", "unconfined_compression "})
+        CHECK_THAT(known.out, Contains(alias));
+    CHECK_THAT(scene.frana("verify energy_lin").err, Contains("did you mean energy_line?"));
+    CHECK(frana::verify::without_aliases({"energy_hockey", "energy_line", "ritter"}) ==
+          std::vector<std::string>{"energy_hockey", "energy_parabola", "energy_avaframe", "ritter"});
+    for (const frana::verify::Alias& alias : frana::verify::aliases()) {
+        CHECK(frana::verify::find_problem(alias.name) == nullptr);
+        for (const std::string& name : alias.problems) CHECK(frana::verify::find_problem(name) != nullptr);
+    }
+    const Outcome line = scene.frana("verify energy_line --cells 40 --json line.json");
+    const auto three = nlohmann::json::parse(text_of(scene.folder() / "line.json"));
+    REQUIRE(three.size() == 3);
+    CHECK(three[0]["name"] == "energy_parabola");
+    CHECK(three[2]["name"] == "energy_avaframe");
