@@ -113,6 +113,17 @@ TEST_CASE("An in-situ entry that cannot work is refused before the run folder is
     };
     refused("[[insitu]]\nname = \"a\"\nkind = \"figure\"\nfield = \"depht\"\n",
             ":11: insitu.0.field: found the text \"depht\"; expected " + expected_of("insitu.field") +
+TEST_CASE("check foretells the frames, with a remark where they are thousands", "[cli]") {
+    const PlaneCase scene;
+    const Outcome few = scene.frana("check CASE --set output.every=0.5");
+    CHECK_THAT(few.out, Contains("frames      5, about ") && !Contains("output.every"));
+    const Outcome many = scene.frana("check CASE --set output.every=1e-4");
+    CHECK_THAT(many.out, Contains("remark      output.every: found 20001 frames, about ") &&
+                             Contains(" MB; expected 3000 at most; give a longer time"));
+    const Outcome none = scene.frana("check CASE --set output.formats=[]");
+    CHECK_THAT(none.out, Contains("frames      3\n"));
+}
+
                 "; did you mean \"depth\"?\n");
     refused("[[camera]]\nname = \"c\"\nprojection = \"perspective\"\ntarget = [40, 50, 95]\n",
             ":8: camera.0.position: not given, but camera.projection = \"perspective\" needs it; expected a list of 3 "
