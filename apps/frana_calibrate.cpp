@@ -63,12 +63,11 @@ std::string finished_mark(const fs::path& dir) {
     return json.is_object() ? json.value("mark", "") : "";
 }
 
-/// Files that no calibration has left are not taken for one's own, nor removed.
+/// Files that no calibration has left are not taken for one's own, nor removed. One that has begun has a folder `kept`.
 void require_room(const fs::path& dir) {
-    if (KeptRuns::are_in(dir)) return;
+    if (fs::exists(dir / "calibrate.json")) return;
     require_no_others(
-        dir, "calibrate.json",
-        {"runs.csv", "posterior.csv", "posterior.png", "report.md", "run.json", "predict.toml", "kept", "predict"},
+        dir, "kept", {"runs.csv", "posterior.csv", "posterior.png", "report.md", "run.json", "predict.toml", "predict"},
         "a calibration");
 }
 
@@ -93,14 +92,15 @@ Interrupted cut_off(const fs::path& dir) {
 void forget_prediction(const fs::path& dir) {
     const fs::path predict = dir / "predict";
     fs::remove(predict / "ensemble.json");
-    for (const char* made : {"shards", "rasters", "figures", "states", "samples.csv", "runs.csv", "report.md",
-                             "ensemble.path", "maps.vti", "terrain.vti"})
+    for (const char* made :
+         {"shards", "rasters", "figures", "states", "samples.csv", "runs.csv", "report.md", "maps.vti", "terrain.vti"})
         fs::remove_all(predict / made);
     std::vector<fs::path> outlines;
     std::error_code none;
     for (const auto& entry : fs::directory_iterator(predict, none))
         if (entry.path().filename().string().rfind("reached_by_", 0) == 0) outlines.push_back(entry.path());
     for (const fs::path& file : outlines) fs::remove(file);
+    fs::remove(predict / "ensemble.path");  // last: without it what is left would be taken for others'
 }
 
 /// Removes an earlier calibration. Its record goes first: whoever finds it takes all the rest for whole.
