@@ -4,14 +4,18 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <limits>
 #include <new>
+#include <optional>
 
 #include "base/error.h"
+#include "base/number_text.h"
 #include "base/version.h"
 #include "frana_commands.h"
 #include "frana_failure.h"
@@ -48,6 +52,29 @@ void add_telling(CLI::App& command, bool& quiet, std::string& progress) {
         ->excludes(none);
 }
 
+/// What the number of an option has to be: finite, and no smaller than a bound.
+struct Bound {
+    double least;
+    bool least_too;
+    const char* expected;
+};
+constexpr Bound kAboveZero{0.0, false, "a finite number above 0"}, kFromZero{0.0, true, "a finite number, 0 or more"},
+    kFinite{std::numeric_limits<double>::lowest(), true, "a finite number"};
+
+/// CLI11 takes "nan" and "inf" for numbers, and prints the largest double where one is out of bounds.
+CLI::Option* numeric(CLI::Option* option, const Bound& bound) {
+    return option->check(CLI::Validator(
+        [option, bound](std::string& text) -> std::string {
+            const std::optional<double> value = number_in(text);
+            const bool fits =
+                value && std::isfinite(*value) && (bound.least_too ? *value >= bound.least : *value > bound.least);
+            if (fits) return "";
+            throw UserError(
+                fmt::format("{}: found {}; expected {}; give one", option->get_name(), text, bound.expected));
+        },
+        ""));
+}
+
 /// What a command on a finished run makes is listed in its run.json, as what the run made.
 int adding_to(const std::filesystem::path& run_dir, const Action& command) {
     int code = 0;
@@ -60,7 +87,7 @@ void add_run(CLI::App& app, RunOptions& options, Action& action) {
     add_case(*command, options.case_file, options.sets);
     command->add_option("--out", options.out, "folder of the results; default out/<case name>");
     command->add_option("--threads", options.threads, "threads; default OMP_NUM_THREADS")->check(CLI::Range(1, 4096));
-    command->add_option("--until", options.until, "stop at this simulated time [s]");
+    numeric(command->add_option("--until", options.until, "stop at this simulated time [s]"), kAboveZero);
     command->add_flag("--resume", options.resume, "go on, bit for bit, from the checkpoint.h5 that a run left");
     command->add_flag("--overwrite", options.overwrite, "replace the files of an earlier run in the folder");
     add_telling(*command, options.quiet, options.progress);
@@ -155,8 +182,8 @@ void add_particles(CLI::App& app, ParticlesOptions& options, Action& action) {
 void add_convert(CLI::App& app, ConvertOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("convert", "columns of a run to 3D points, with what is kept on the way");
     command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();
-    command->add_option("--time", options.time, "simulated time [s]; the nearest frame is taken");
-    command->add_option("--spacing", options.spacing, "vertical distance of the points [m]");
+    numeric(command->add_option("--time", options.time, "simulated time [s]; the nearest frame is taken"), kFinite);
+    numeric(command->add_option("--spacing", options.spacing, "vertical distance of the points [m]"), kFinite);
     command->add_option("--out", options.out, "file to write: .h5, .json, .csv, .vtp or .mdpa");
     command->add_option("--layers", options.layers, "centres (of equal slices, default) or end-points (bed to surface)")
         ->check(CLI::IsMember({"centres", "end-points"}));
@@ -164,7 +191,7 @@ void add_convert(CLI::App& app, ConvertOptions& options, Action& action) {
         ->check(CLI::IsMember({"along-bed", "zero"}));
     command->add_option("--profile", options.profile, "of the velocity: plug (default), linear, parabolic, bagnold")
         ->check(CLI::IsMember({"plug", "linear", "parabolic", "bagnold"}));
-    command->add_option("--window", options.window, "only columns within: xmin,ymin,xmax,ymax")
+    numeric(command->add_option("--window", options.window, "only columns within: xmin,ymin,xmax,ymax"), kFinite)
         ->delimiter(',')
         ->expected(4);
     command->add_option("--points", options.points, "3D points (.h5) to bring back onto the run's grid, with --back");
@@ -187,7 +214,7 @@ void read_size(const std::string& text, FiguresOptions& options) {
 void add_figures(CLI::App& app, FiguresOptions& options, std::string& size, Action& action) {
     CLI::App* command = app.add_subcommand("figures", "render the figures of a run again, headless");
     command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();
-    command->add_option("--time", options.time, "simulated time [s]; default the last frame");
+    numeric(command->add_option("--time", options.time, "simulated time [s]; default the last frame"), kFinite);
     command->add_option("--size", size, "pixels; default 1600x1200")->type_name("WxH");
     command->add_option("--film", options.film, "a film of the depth besides, mp4 or gif; needs the program ffmpeg")
         ->check(CLI::IsMember({"mp4", "gif"}));
@@ -208,10 +235,9 @@ void add_compare(CLI::App& app, CompareOptions& options, Action& action) {
     command->add_option("--deposit", options.deposit, "raster of the surveyed deposit's thickness [m]");
     CLI::Option* change = command->add_option("--bed-change", options.bed_change,
                                               "raster of the difference of two surveys, after minus before [m]");
-    command
-        ->add_option("--bed-change-noise", options.bed_change_noise,
-                     "change within the noise of both surveys, which counts as none [m]; default 0.1")
-        ->check(CLI::NonNegativeNumber)
+    numeric(command->add_option("--bed-change-noise", options.bed_change_noise,
+                                "change within the noise of both surveys, which counts as none [m]; default 0.1"),
+            kFromZero)
         ->needs(change);
     command->add_option("--path", options.path, "line for the runout; default the steepest from the release");
     command->add_option("--json", options.json, "file of the scores; default RUN_DIR/compare.json");
@@ -269,19 +295,18 @@ void add_bench(CLI::App& app, BenchOptions& options, Action& action) {
 
 void add_stress(CLI::App& app, StressOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("stress", "random hostile scenes; invariants checked each step");
-    command->add_option("--seconds", options.seconds, "wall time for running scenes; default 60")
-        ->check(CLI::PositiveNumber);
+    numeric(command->add_option("--seconds", options.seconds, "wall time for running scenes; default 60"), kAboveZero);
     command->add_option(
         "--model", options.models,
         "what carries the scenes: all (the default), or with commas between them depth_averaged, solid_flow "
         "(points in space), structured, water, mixture (structured columns and water), staged");
-    command->add_option("--seed", options.seed, "of the series; default 1")->check(CLI::NonNegativeNumber);
-    command->add_option("--scenes", options.scenes, "at most so many; default as many as the time allows")
-        ->check(CLI::PositiveNumber);
-    command->add_option("--first", options.first, "number of the first scene of the series; default 0")
-        ->check(CLI::NonNegativeNumber);
-    command->add_option("--shrunk", options.shrunk, "failures that are shrunk and saved; default 20")
-        ->check(CLI::NonNegativeNumber);
+    numeric(command->add_option("--seed", options.seed, "of the series; default 1"), kFromZero);
+    numeric(command->add_option("--scenes", options.scenes, "at most so many; default as many as the time allows"),
+            kAboveZero);
+    numeric(command->add_option("--first", options.first, "number of the first scene of the series; default 0"),
+            kFromZero);
+    numeric(command->add_option("--shrunk", options.shrunk, "failures that are shrunk and saved; default 20"),
+            kFromZero);
     command->add_option("--json", options.json, "write the results as JSON");
     command->add_option("--out", options.out, "folder for cases of failing scenes; default out/stress");
     command->add_option("--known", options.known,
@@ -289,7 +314,7 @@ void add_stress(CLI::App& app, StressOptions& options, Action& action) {
     command->add_flag("--cfl-map", options.cfl_map, "find the largest stable scheme.cfl of each scheme instead");
     command->add_option("--figure", options.figure, "draw that map (PNG)");
     command->add_option("--case", options.case_file, "watch this case instead");
-    command->add_option("--steps", options.steps, "of that case; default 100")->check(CLI::PositiveNumber);
+    numeric(command->add_option("--steps", options.steps, "of that case; default 100"), kAboveZero);
     command->add_flag("--rests", options.rests, "nothing in that case may move");
     command->add_option("--mirror", options.mirror, "that case is its own mirror image: x, y or diagonal");
     command->add_flag("--same-threads", options.same_threads, "one thread and two must give that case the same bits");

@@ -16,6 +16,7 @@
 #include "run/ensemble/kept_rows.h"
 #include "run/ensemble/shard_store.h"
 #include "run/folder/input_sums.h"
+#include "run/folder/run_folder.h"
 #include "run/folder/run_lock.h"
 #include "scene/build_scene.h"
 #include "scene/case_file.h"
@@ -31,7 +32,8 @@ std::vector<double> take(const std::vector<std::vector<EventRun>>& runs, Calibra
         const SurveyedEvent& event = found.plan.events[e];
         for (std::size_t k = 0; k < all.size(); ++k) {
             const EventRun& run = runs[e][k];
-            found.failed += !run.ended();
+            if (!run.ended() && found.failed == 0) found.first_failure = run.message.empty() ? run.reason : run.message;
+            found.failed += !run.ended(), found.not_at_rest += run.still_moves;
             found.seconds += run.seconds;
             found.fits[e].scores.push_back(run.scores);
             found.fits[e].log_likelihood.push_back(log_likelihood(run.scores, event.objective, event.errors));
@@ -61,6 +63,14 @@ std::string finished_mark(const fs::path& dir) {
     return json.is_object() ? json.value("mark", "") : "";
 }
 
+/// Files that no calibration has left are not taken for one's own, nor removed. One that has begun has a folder `kept`.
+void require_room(const fs::path& dir) {
+    if (fs::exists(dir / "calibrate.json")) return;
+    require_no_others(
+        dir, "kept", {"runs.csv", "posterior.csv", "posterior.png", "report.md", "run.json", "predict.toml", "predict"},
+        "a calibration");
+}
+
 /// False when all is there already.
 bool something_to_do(const CalibrateOptions& options, const CalibrationPlan& plan) {
     const fs::path record = options.out / "calibrate.json";
@@ -82,14 +92,15 @@ Interrupted cut_off(const fs::path& dir) {
 void forget_prediction(const fs::path& dir) {
     const fs::path predict = dir / "predict";
     fs::remove(predict / "ensemble.json");
-    for (const char* made : {"shards", "rasters", "figures", "states", "samples.csv", "runs.csv", "report.md",
-                             "ensemble.path", "maps.vti", "terrain.vti"})
+    for (const char* made :
+         {"shards", "rasters", "figures", "states", "samples.csv", "runs.csv", "report.md", "maps.vti", "terrain.vti"})
         fs::remove_all(predict / made);
     std::vector<fs::path> outlines;
     std::error_code none;
     for (const auto& entry : fs::directory_iterator(predict, none))
         if (entry.path().filename().string().rfind("reached_by_", 0) == 0) outlines.push_back(entry.path());
     for (const fs::path& file : outlines) fs::remove(file);
+    fs::remove(predict / "ensemble.path");  // last: without it what is left would be taken for others'
 }
 
 /// Removes an earlier calibration. Its record goes first: whoever finds it takes all the rest for whole.
@@ -102,7 +113,7 @@ void forget_calibration(const fs::path& dir) {
 /// Runs what is left, and writes what is found.
 Calibration calibrate(const CalibrateOptions& options, const CalibrationPlan& plan) {
     Calibration found{plan, Posterior(static_cast<Index>(plan.vary.size()), plan.seed),
-                      std::vector<EventFit>(plan.events.size()), 0, 0.0};
+                      std::vector<EventFit>(plan.events.size())};
     const Interrupt interrupt(Interrupt::Listen::signals);
     const EventRuns runs(plan, options.threads, interrupt);
     const RunLock lock(options.out);
@@ -165,6 +176,7 @@ bool predicted(const fs::path& dir, const EnsemblePlan& maps) {
 
 int run_calibration(const CalibrateOptions& options) {
     const CalibrationPlan plan = read_calibration(options.file);
+    require_room(options.out);
     const bool calibrated = !something_to_do(options, plan);
     if (calibrated && (!plan.predict || predicted(options.out, *plan.predict))) {
         if (!options.quiet && options.progress.empty())

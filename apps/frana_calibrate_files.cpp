@@ -99,6 +99,7 @@ Json record_of(const Calibration& c, const std::vector<std::string>& files) {
     json["score"] = score;
     json["evaluations"] = c.posterior.points().size() * c.fits.size();
     json["failed"] = c.failed;
+    json["not_at_rest"] = c.not_at_rest;
     json["posterior"] = posterior;
     json["pairs"] = pairs;
     if (c.optimum) json["optimum"] = optimum_json(c);
@@ -183,6 +184,11 @@ bool draw(const fs::path& dir, const Calibration& c) {
 
 std::vector<std::string> write_calibration(const fs::path& dir, const Calibration& c) {
     const std::vector<double> w = c.posterior.weights();
+    if (c.failed == static_cast<Index>(w.size() * c.fits.size()))
+        throw UserError(
+            fmt::format("{}: found that all {} runs failed, the first one so: {}; expected runs that end; give other "
+                        "ranges, or correct the case",
+                        c.plan.file.string(), c.failed, c.first_failure));
     if (!(effective_number(w) > 0.0))
         throw UserError(
             fmt::format("{}: found no run that comes near a survey; expected one or more; widen the ranges, or raise "

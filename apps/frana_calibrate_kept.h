@@ -16,6 +16,7 @@ struct EventRun {
     std::string reason, message;  ///< as of SampleResult
     double seconds = 0.0;         ///< wall time [s]
     EventScores scores;           ///< nothing known where the run has no answer
+    bool still_moves = false;     ///< as of SampleResult
 
     bool ended() const { return reason == "end" || reason == "rest" || reason == "left"; }
 };

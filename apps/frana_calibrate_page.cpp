@@ -124,6 +124,9 @@ std::string calibration_section(const Calibration& c) {
     page += fmt::format("\n{} points, {} runs, {} failed; the points tell as much as {:.0f} of equal weight.", w.size(),
                         w.size() * c.fits.size(), c.failed, effective);
     if (c.failed > 0) page += " Where one failed, the surveys have no say: its values count as if they were excluded.";
+    if (c.not_at_rest > 0)
+        page += fmt::format(" {} still moved at time.end, and were held against the surveys as they were then.",
+                            c.not_at_rest);
     if (effective < kFewSamples) page += " Fewer than 50 are few: give more samples or rounds, or a larger sigma.";
     return page + "\n\n" + misfits_section(c, best) + predictions_section(c);
 }

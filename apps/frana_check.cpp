@@ -180,6 +180,25 @@ std::string stage_text(const Scene& scene) {
         seconds_text(steps * points * seconds_per_point_step), seconds_per_point_step * 1e9);
 }
 
+/// How many frames a run of the whole time leaves, and about how large they are, with a remark where they are many.
+std::string frames_text(const Scene& scene) {
+    constexpr double kMany = 3000.0;
+    constexpr double kParticle = 120.0, kNode = 25.0;  // bytes, compressed; measured
+    const double frames = std::ceil(scene.end / scene.output.every - 1e-9) + 1.0;
+    const double formats = (scene.output.vtk ? 1.0 : 0.0) + (scene.output.xdmf ? 1.0 : 0.0);
+    const double bytes =
+        frames * formats *
+        (kParticle * static_cast<double>(particles_of(scene)) + kNode * static_cast<double>(scene.bed.geometry.size()));
+    const std::string size = bytes > 0.0 ? fmt::format(", about {:.2g} MB", bytes / 1e6) : "";
+    std::string text = fmt::format("frames      {:.0f}{}\n", frames, size);
+    if (frames > kMany)
+        text += fmt::format(
+            "remark      output.every: found {:.0f} frames{}; expected {:.0f} at most; give a longer time "
+            "between them\n",
+            frames, size, kMany);
+    return text;
+}
+
 std::string forecast_text(const Scene& scene) {
     const Forecast f = forecast(scene);
     const double per_step = scene.end > 0.0 ? f.particle_seconds / scene.end * seconds_per_particle_step : 0.0;
@@ -219,7 +238,7 @@ std::string barriers_text(const Scene& scene) {
 std::string told_of(const BuiltScene& built) {
     std::string text = fmt::format("case        {}\n", built.scene.title) + grid_text(built.scene);
     for (const ReleaseSummary& release : built.releases) text += release_text(release);
-    text += total_text(built) + width_text(built.scene) + forecast_text(built.scene);
+    text += total_text(built) + width_text(built.scene) + forecast_text(built.scene) + frames_text(built.scene);
     if (built.scene.friction)
         for (const FrictionPart& part : built.scene.friction->parts)
             text += fmt::format("friction    {}{}: {}\n", part.name, built.scene.wider ? ", around the releases" : "",

@@ -1,7 +1,9 @@
 // `frana compare RUN_DIR --survey FOOTPRINT`: a finished run held against a survey, from the run's own files.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <iostream>
+#include <iterator>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -10,6 +12,7 @@
 #include "frana_figures.h"
 #include "run/folder/comparison.h"
 #include "run/folder/run_charts.h"
+#include "run/folder/run_folder.h"
 #include "run/folder/states.h"
 #include "vtk_io/survey_vtp.h"
 
@@ -41,6 +44,16 @@ void require_erodible(const CompareOptions& options, const std::vector<ProductRa
         (options.run_dir / "rasters" / "bed_change.tif").string()));
 }
 
+/// Scores must not take the place of what they are made of.
+void require_other_json(const CompareOptions& options) {
+    std::vector<fs::path> inputs = {options.survey, options.deposit, options.path, options.bed_change};
+    const std::vector<fs::path> of_run = product_files(options.run_dir);
+    const fs::path own = options.run_dir / "compare.json";
+    std::copy_if(of_run.begin(), of_run.end(), std::back_inserter(inputs),
+                 [&](const fs::path& file) { return file != own; });
+    require_no_input("--json", options.json, inputs);
+}
+
 /// compare.md: the comparison on one page, with its picture.
 std::string page(const FigureSource& source, const Comparison& comparison, const std::vector<DrawnFigure>& figures) {
     std::string text = fmt::format("# {}\n\n", source.title) + comparison_section(comparison);
@@ -60,13 +73,14 @@ RunAndSurvey read_run_and_survey(const CompareOptions& options) {
         read_survey_files({options.survey, options.deposit, options.path, options.bed_change, options.bed_change_noise},
                           find_product(source.rasters, "peak_depth")->raster, read.warnings);
     read.comparison = compare_rasters(source.rasters, source.bed.values.empty() ? nullptr : &source.bed,
-                                      source.footprint_depth, survey);
+                                      source.footprint_depth, survey, source.start);
     source.survey = survey.footprint;
     source.runout_path = read.comparison.path;
     return read;
 }
 
 int compare_command(const CompareOptions& options) {
+    if (!options.json.empty()) require_other_json(options);
     RunAndSurvey read = read_run_and_survey(options);
     FigureSource& source = read.run;
     const Comparison& comparison = read.comparison;

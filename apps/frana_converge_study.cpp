@@ -11,6 +11,7 @@
 #include "compare/flow_width.h"
 #include "compare/outline.h"
 #include "compare/runout.h"
+#include "frana_figures.h"
 #include "run/folder/products.h"
 
 namespace frana {
@@ -61,14 +62,16 @@ struct Path {
 Path path_of(const RunFiles& finest, const Raster& bed, std::vector<std::string>& remarks) {
     Path path;
     path.start = release_middle(finest.raster("arrival_time"));
+    if (!path.start) path.start = start_of_run(finest.folder);
     if (!path.start) {
-        remarks.push_back("nothing covers the ground at the start, so neither runout nor reach are known");
+        remarks.push_back(
+            "it is not known where the flow begins, so neither runout nor reach are, and the rule goes without");
         return path;
     }
     path.line = steepest_path(bed, *path.start);
     if (length_of(path.line) > 0.0) return path;
     path.line.clear();
-    remarks.push_back("no steepest path from the release is known; the runout is the straight reach");
+    remarks.push_back("no steepest path from the start of the flow is known; the runout is the straight reach");
     return path;
 }
 

@@ -11,6 +11,7 @@
 #include "frana_progress_lines.h"
 #include "frana_run_teller.h"
 #include "run/ensemble/ensemble_run.h"
+#include "run/ensemble/kept_rows.h"
 #include "run/ensemble/run_pool.h"
 #include "run/interrupt.h"
 #include "scene/case_file.h"
@@ -75,10 +76,16 @@ int run_again(const EnsembleOptions& options, const EnsemblePlan& plan) {
     if (sample < 0 || sample >= plan.samples)
         throw UserError(fmt::format("--again: found {}; expected a sample from 0 to {}; see samples.csv", sample,
                                     plan.samples - 1));
-    const fs::path folder = options.out / fmt::format("sample_{}", sample);
+    const fs::path folder = options.out / fmt::format("sample_{}", sample), file = folder / "case.toml";
+    const std::string text = resolved_toml(CaseFile::read(plan.case_file, plan.sets_of(sample)));
+    if (!has_runs_of(options.out, plan) && fs::exists(file) && text_in(file) != text)
+        throw UserError(
+            fmt::format("{}: found another case there, and no runs of this ensemble beside it; expected none, or that "
+                        "of sample {}; choose another folder with --out, or move it away",
+                        file.string(), sample));
     fs::create_directories(folder);
-    write_text(folder / "case.toml", resolved_toml(CaseFile::read(plan.case_file, plan.sets_of(sample))));
-    std::cout << fmt::format("frana run {} --out {}\n", (folder / "case.toml").string(), (folder / "run").string());
+    write_text(file, text);
+    std::cout << fmt::format("frana run {} --out {}\n", file.string(), (folder / "run").string());
     return 0;
 }
 

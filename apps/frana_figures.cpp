@@ -1,6 +1,7 @@
 // `frana figures RUN_DIR`: the pictures of a finished run, drawn again from its files.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iostream>
@@ -17,6 +18,7 @@
 #include "run/folder/run_film.h"
 #include "run/folder/run_folder.h"
 #include "run/folder/run_page.h"
+#include "run/folder/run_state.h"
 #include "run/web/web_page.h"
 #include "scene/barriers_of_case.h"
 #include "terrain/part_of.h"
@@ -167,7 +169,10 @@ void read_bed(FigureSource& source, std::vector<std::string>& warnings) {
 /// map_effective_stress_xx_t12.5s.png and so on.
 /// `shown` keeps what they show.
 void add_moment(const FigureSource& source, double time, std::list<ProductRaster>& shown, Gallery& gallery) {
-    const LoadedFrame frame = read_frame(source.run_dir, nearest_frame(source.run_dir, time));
+    const Index nearest = choose_frame(frame_times(source.run_dir), time, source.run_dir / "grid.pvd");
+    const LoadedFrame frame = read_frame(source.run_dir, nearest);
+    if (std::abs(frame.time - time) > 1e-9 * std::max(1.0, std::abs(frame.time)))
+        gallery.warn(fmt::format("no frame at {:.6g} s; the nearest, at {:.6g} s, is drawn", time, frame.time));
     const std::string moment = fmt::format("{:.6g}", frame.time);
     const auto keep = [&](ProductRaster product) { return &shown.emplace_back(std::move(product)); };
     const ProductRaster* extent = frame.has("depth") ? keep(from_frame(frame, "depth", "depth")) : nullptr;
@@ -206,10 +211,20 @@ std::string title_of_run(const fs::path& run_dir) {
     return source.title;
 }
 
+std::optional<Vec2> start_of_run(const fs::path& run_dir) {
+    const auto json = nlohmann::json::parse(text_of(run_dir / "run.json"), nullptr, false);
+    using namespace nlohmann::literals;
+    if (!json.is_object()) return std::nullopt;  // said elsewhere
+    const auto start = json.value("/results/start"_json_pointer, nlohmann::json());
+    if (!start.is_array() || start.size() != 2 || !start[0].is_number() || !start[1].is_number()) return std::nullopt;
+    return Vec2(start[0].get<double>(), start[1].get<double>());
+}
+
 FigureSource read_finished_run(const fs::path& run_dir, std::vector<std::string>& warnings) {
     FigureSource source;
     source.run_dir = run_dir;
     read_record(run_dir, source);
+    source.start = start_of_run(run_dir);
     source.rasters = read_rasters(run_dir);
     read_bed(source, warnings);
     return source;

@@ -8,6 +8,7 @@
 #include "io/gdal_reader.h"
 #include "io/hdf5_seeds.h"
 #include "particles/export.h"
+#include "run/folder/run_folder.h"
 #include "scene/build_scene.h"
 #include "vtk_io/seeds_vtp.h"
 
@@ -34,7 +35,9 @@ int particles_command(const ParticlesOptions& options) {
     const Writer write = writer_of(export_format(options.out));
     std::vector<std::string> sets = options.sets;
     if (options.count) sets.push_back(fmt::format("particles.count={}", *options.count));
-    const BuiltScene built = build_scene_in_detail(CaseFile::read(options.case_file, sets), GdalReader());
+    const CaseFile file = CaseFile::read(options.case_file, sets);
+    require_no_input("--out", options.out, file.inputs());
+    const BuiltScene built = build_scene_in_detail(file, GdalReader());
     const Scene& scene = built.scene;
     for (const std::string& remark : scene.log) std::cout << remark << '\n';
     make_folder_of(options.out);

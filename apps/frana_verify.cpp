@@ -1,6 +1,6 @@
 // `frana verify`: runs problems with exact answers and prints what the scheme makes of them.
 #include <fmt/chrono.h>
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <omp.h>
 
 #include <cmath>
@@ -31,6 +31,7 @@ std::vector<const Problem*> chosen(const std::vector<std::string>& names) {
         if (problems.back()) continue;
         std::vector<std::string> known;
         for (const Problem& problem : verify::library()) known.push_back(problem.name);
+        for (const verify::Alias& alias : verify::aliases()) known.push_back(alias.name);
         const std::string near = closest(name, known);
         throw UserError(
             fmt::format("command line: found the unknown problem \"{}\"; expected one that `frana verify "
@@ -45,6 +46,8 @@ std::vector<const Problem*> chosen(const std::vector<std::string>& names) {
 void print_list() {
     for (const Problem& problem : verify::library())
         fmt::print("{:18} {}{}\n", problem.name, problem.title, problem.takes_minutes ? " (minutes; when named)" : "");
+    for (const verify::Alias& alias : verify::aliases())
+        fmt::print("{:18} stands for {}: {}\n", alias.name, fmt::join(alias.problems, ", "), alias.title);
 }
 
 /// Equations of the exact answer that it fails to satisfy.
@@ -126,7 +129,9 @@ int compare(const std::string& table, const VerifyOptions& options) {
 
 }  // namespace
 
-int verify_command(const VerifyOptions& options) {
+int verify_command(const VerifyOptions& given) {
+    VerifyOptions options = given;
+    options.names = verify::without_aliases(given.names);
     if (options.list) {
         print_list();
         return 0;

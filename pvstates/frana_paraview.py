@@ -57,7 +57,7 @@ PORTS = [  # name, type, the series of files that it shows over time
     ("outlines", vtkPolyData, None), ("profiles", vtkPolyData, "profiles.pvd"),
     ("barriers", vtkPolyData, "barriers.pvd"), ("history", vtkTable, None), ("results", vtkTable, None)]
 FOOTPRINT, SURVEY = 1, 2  # kinds of outlines
-ENDED = ("end", "rest", "left")  # run.json's exit_reason of a run that went to its end
+ENDED = ("end", "until", "rest", "left")  # run.json's exit_reason of a run that went to its end
 RUNNING = "running"  # of one that goes on, or was killed; nothing else of it is known
 
 GONE = "%s: is not there, but the run names it; copy the whole folder of the run, or run it again"

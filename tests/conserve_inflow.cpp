@@ -38,6 +38,11 @@ Scene slope(bool slab) {
     return scene;
 }
 
+std::vector<double> values_of(const Frame& frame, const char* field) {
+    const Field& found = *frame.node(field);
+    return {found.data, found.data + found.count * found.components};
+}
+
 double residual(const Status& first, const Status& now) {
     const Budget b = budget(first, now);
     return std::hypot(b.momentum_residual[0], b.momentum_residual[1]);
@@ -265,13 +270,77 @@ TEST_CASE("What holds an inflow up behind its line is no flow to peaks", "[inflo
         return found->data[j * 90 + i];
     };
     // The line lies at x = 20, and the flow goes to larger x.
-    CHECK(at("depth", 18, 26) > 0.1);
+    REQUIRE(run.flow().nodes.depth[run.flow().grid.at(18, 26)] > 0.1);
     for (const Index behind : {16, 17, 18}) {
+        CHECK(at("depth", behind, 26) == 0.0);
+        CHECK(at("surface", behind, 26) == at("elevation", behind, 26));
         CHECK(at("peak_depth", behind, 26) == 0.0);
         CHECK(at("peak_speed", behind, 26) == 0.0);
     }
     CHECK(at("peak_depth", 22, 26) > 0.1);
     CHECK(at("peak_speed", 22, 26) > 1.0);
+}
+
+TEST_CASE("Frames show the depth of what has come in, and none of what holds it up", "[inflow][resume]") {
+    const bool walled = GENERATE(false, true), slab = GENERATE(false, true);
+    CAPTURE(walled, slab);
+    Scene scene = slope(slab);
+    if (walled) {  // the line goes from wall to wall
+        scene.sides = Sides::wall;
+        scene.inflows[0].line = {{20, 0}, {20, 44}};
+    }
+    DepthAveraged run(scene);
+    bool held_up = false;
+    while (run.status().time < 4.0) {
+        const double before = run.status().time;
+        run.advance(4.0);
+        if (std::floor(5.0 * run.status().time) == std::floor(5.0 * before)) continue;
+        const Frame frame = run.frame();
+        const std::vector<double> depth = values_of(frame, "depth"), peak = values_of(frame, "peak_depth"),
+                                  speed = values_of(frame, "speed"), arrival = values_of(frame, "arrival_time"),
+                                  surface = values_of(frame, "surface"), bed = values_of(frame, "elevation");
+        double mass = 0.0, area = 0.0, deepest = 0.0, all = 0.0;
+        for (Index j = 0; j < 45; ++j)
+            for (Index i = 0; i < 90; ++i) {
+                const auto n = static_cast<std::size_t>(j * 90 + i);
+                const double share = run.flow().share(i, j);
+                mass += scene.density * share * depth[n];
+                all += scene.density * share * run.flow().nodes.depth[run.flow().grid.at(i, j)];
+                if (depth[n] > scene.output.footprint_depth) area += share;
+                deepest = std::max(deepest, depth[n]);
+                CHECK(depth[n] <= peak[n]);
+                CHECK(surface[n] == bed[n] + depth[n]);
+                if (depth[n] > scene.output.footprint_depth) CHECK(arrival[n] >= 0.0);
+                if (depth[n] == 0.0) CHECK(speed[n] == 0.0);
+            }
+        CHECK(mass == Approx(frame.status.mass).epsilon(1e-12));
+        CHECK(frame.status.covered_area == Approx(area).epsilon(1e-12));
+        CHECK(frame.status.max_depth == deepest);
+        held_up = held_up || all > 1.05 * frame.status.mass;
+        MemoryArchive kept;
+        run.serialize(kept);
+        DepthAveraged resumed(scene, Start::resumed);
+        resumed.serialize(kept.rewind());
+        CHECK(values_of(resumed.frame(), "depth") == depth);
+    }
+    CHECK(held_up);
+}
+
+TEST_CASE("The energy of an inflow from wall to wall has none of what holds it up", "[inflow]") {
+    Scene scene = slope(false);
+    scene.sides = Sides::wall;
+    scene.inflows[0].line = {{20, 0}, {20, 44}};
+    DepthAveraged run(scene);
+    run_to(run, 2.5);
+    const Frame frame = run.frame();
+    const std::vector<double> depth = values_of(frame, "depth"), bed = values_of(frame, "elevation");
+    double potential = 0.0;
+    for (Index j = 0; j < 45; ++j)
+        for (Index i = 0; i < 90; ++i) {
+            const auto n = static_cast<std::size_t>(j * 90 + i);
+            potential += run.flow().share(i, j) * scene.density * scene.gravity * depth[n] * (bed[n] + 0.5 * depth[n]);
+        }
+    CHECK(frame.status.potential == Approx(potential).epsilon(1e-12));
 }
 
 TEST_CASE("An inflow beside a barrier", "[inflow]") {

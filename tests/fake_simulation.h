@@ -18,6 +18,7 @@ struct FakeScript {
     bool fail_with_nan = false;                                   ///< ... and the state is not finite
     std::function<void(Index)> on_step;                           ///< called with each new step's number
     double front_turns = std::numeric_limits<double>::max();      ///< the front draws back from here on [s]
+    bool tells_step = false;                                      ///< its longest_step() is `dt`
 };
 
 class FakeSimulation : public Simulation {
@@ -55,6 +56,7 @@ public:
         if (script_.on_step) script_.on_step(status_.step);
     }
     const Status& status() const override { return status_; }
+    double longest_step() const override { return script_.tells_step ? script_.dt : 0.0; }
     MovingMass motion(const MotionQuery& query) const override {
         const bool moving = status_.max_speed > query.faster_than;
         return {status_.mass, moving ? status_.mass : 0.0, status_.max_speed, 0};

@@ -356,7 +356,7 @@ TEST_CASE("the search goes down from a poor point, and says where it ended", "[e
 TEST_CASE("a survey that misleads about another event is named", "[ensemble]") {
     // Four values, likely by one survey each or by none, and how far the outlines of each event are apart with them. Medians by hand:
     // (5 + 6) / 2, (5 + 5) / 2, (8 + 8) / 2.
-    frana::Calibration found{{}, frana::Posterior(1, 1), std::vector<frana::EventFit>(3), 0, 0.0};
+    frana::Calibration found{{}, frana::Posterior(1, 1), std::vector<frana::EventFit>(3), 0, 0, 0.0};
     found.plan.samples = 4;
     const double apart[3][4] = {{1, 9, 5, 6}, {5, 1, 5, 7}, {8, 9, 1, 8}};
     for (std::size_t e = 0; e < 3; ++e) {
@@ -449,7 +449,9 @@ TEST_CASE("a calibration that is killed goes on, and leaves the same bytes", "[e
     // Begun anew and killed, it is not taken for finished.
     kill_once_more_is_kept(slide.path(""), kept, "--overwrite");
     CHECK_FALSE(fs::exists(slide.path("killed/calibrate.json")));
-    REQUIRE(slide.frana("calibrate find.toml --out killed --resume --quiet").code == 0);
+    const Outcome anew = slide.frana("calibrate find.toml --out killed --resume --quiet");
+    INFO(anew.err);
+    REQUIRE(anew.code == 0);
 
     // Another terrain or survey is another calibration.
     const std::string terrain = text_of(slide.path("dem.asc"));
@@ -555,6 +557,30 @@ TEST_CASE("what an event's survey lacks is said in one sentence", "[ensemble]") 
     CHECK_THAT(complaint("sigma_log = -1\n"), Contains("found -1; expected a number above 0"));
 }
 
+TEST_CASE("where every run is refused, the first refusal is said", "[ensemble]") {
+    const PlaneCase scene;
+    scene.write(
+        "[survey]\nfootprint = \"release.geojson\"\n[material.bed]\nlaw = \"pouliquen\"\nmu_s = 0.3\nmu_2 = 0.6\n"
+        "grain_diameter = 0.01\n");
+    frana::write_text(scene.folder() / "find.toml",
+                      "[calibrate]\nsamples = 4\nrounds = 1\n[[calibrate.vary]]\nkey = \"material.bed.mu_2\"\n"
+                      "range = [0.1, 0.2]\n[[event]]\ncase = \"case.toml\"\n");
+    const Outcome outcome = scene.frana("calibrate find.toml --out found --quiet");
+    CHECK(outcome.code == 2);
+    CHECK_THAT(outcome.err,
+               Contains("found that all 4 runs failed, the first one so: ") && Contains("material.bed.mu_2: "));
+    CHECK_FALSE(fs::exists(scene.folder() / "found" / "calibrate.json"));
+    const Outcome other = scene.frana("run CASE --out run --quiet");
+    REQUIRE(other.code == 0);
+    const std::string report = text_of(scene.folder() / "run" / "report.md");
+    for (const char* how : {"", " --overwrite", " --resume"}) {
+        const Outcome refused = scene.frana(std::string("calibrate find.toml --out run --quiet") + how);
+        CHECK(refused.code == 2);
+        CHECK_THAT(refused.err, Contains("which a calibration would replace"));
+    }
+    CHECK(text_of(scene.folder() / "run" / "report.md") == report);
+}
+
 TEST_CASE("what cannot be calibrated is said in one sentence", "[ensemble]") {
     const PlaneCase scene;
     const auto complaint = [&](const std::string& text) {
@@ -576,6 +602,8 @@ TEST_CASE("what cannot be calibrated is said in one sentence", "[ensemble]") {
     CHECK_THAT(complaint("[calibrate]\n" + vary + "[[event]]\ncase = \"none.toml\"\n"), Contains("none.toml"));
     CHECK_THAT(complaint("[calibrate]\n" + vary + event + "weight = 0\n"),
                Contains("found 0; expected a number above 0"));
+    CHECK_THAT(complaint("[calibrate]\n" + vary + event + event),
+               Contains("event.1.name: found \"case\" a second time; expected another name"));
     CHECK_THAT(complaint("[calibrate]\nsamples = 501\nrounds = 10\n" + vary + event), Contains("found 5010 runs"));
     CHECK_THAT(complaint("[calibrate]\n[[calibrate.vary]]\nkey = \"release.0.depth\"\ndistribution = \"discrete\"\n"
                          "values = [1, 2]\n" +

@@ -1,4 +1,5 @@
 // The program as a person calls it: exit codes, what goes to stdout and what to stderr.
+#include <fmt/format.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 
 #include "base/atomic_file.h"
 #include "catch.h"
+#include "checks/verify/library.h"
 #include "plane_case.h"
 #include "scene/parameters.h"
 
@@ -60,6 +62,31 @@ TEST_CASE("A mistake on the command line leaves with 2 and a sentence on stderr"
     CHECK_FALSE(std::filesystem::exists(scene.folder() / "--quiet"));
 }
 
+TEST_CASE("A number on the command line is finite and within its bound, or is named in a sentence", "[cli]") {
+    const PlaneCase scene;
+    const auto refused = [&](const std::string& arguments, const std::string& sentence) {
+        CAPTURE(arguments);
+        const Outcome outcome = scene.frana(arguments);
+        CHECK(outcome.code == 2);
+        CHECK(outcome.err == sentence + "\n");
+    };
+    for (const char* wrong : {"nan", "0", "-1", "inf", "soon"})
+        refused(fmt::format("run CASE --until {}", wrong),
+                fmt::format("--until: found {}; expected a finite number above 0; give one", wrong));
+    for (const char* wrong : {"nan", "-1", "inf"})
+        refused(fmt::format("compare run --survey s.geojson --bed-change d.tif --bed-change-noise {}", wrong),
+                fmt::format("--bed-change-noise: found {}; expected a finite number, 0 or more; give one", wrong));
+    refused("figures run --time nan", "--time: found nan; expected a finite number; give one");
+    refused("convert run --time inf --spacing 1 --out p.h5", "--time: found inf; expected a finite number; give one");
+    refused("stress --seconds -1", "--seconds: found -1; expected a finite number above 0; give one");
+    CHECK(scene.frana("run CASE --until 0.5 --quiet --out out").code == 0);
+    refused("figures out --time 1e9",
+            "--time 1e+09: is past the last frame of out/grid.pvd; expected 0 to 0.5 s; give a time of the run, or let "
+            "the run go further");
+    refused("figures out --time -5",
+            "--time -5: lies before the first frame of out/grid.pvd; expected 0 to 0.5 s; give a time of the run");
+}
+
 TEST_CASE("describe explains a key, and leaves with 2 for one that does not exist", "[cli]") {
     const PlaneCase scene;
     const Outcome cell = scene.frana("describe grid.cell");
@@ -84,6 +111,17 @@ TEST_CASE("check tells grid, particles and volume of a good case without running
     CHECK_THAT(check.out, Contains("remark      material.bed.law is not given"));
     CHECK_THAT(check.out, Catch::EndsWith("ready to run\n"));
     CHECK_FALSE(fs::exists(scene.folder() / "out"));
+}
+
+TEST_CASE("check foretells the frames, with a remark where they are thousands", "[cli]") {
+    const PlaneCase scene;
+    const Outcome few = scene.frana("check CASE --set output.every=0.5");
+    CHECK_THAT(few.out, Contains("frames      5, about ") && !Contains("output.every"));
+    const Outcome many = scene.frana("check CASE --set output.every=1e-4");
+    CHECK_THAT(many.out, Contains("remark      output.every: found 20001 frames, about ") &&
+                             Contains(" MB; expected 3000 at most; give a longer time"));
+    const Outcome none = scene.frana("check CASE --set output.formats=[]");
+    CHECK_THAT(none.out, Contains("frames      3\n"));
 }
 
 TEST_CASE("check and run refuse 3D points that no memory holds", "[cli]") {
@@ -188,6 +226,11 @@ TEST_CASE("particles writes every format, with the count asked for", "[cli]") {
     }
     const std::string csv = text_of(scene.folder() / "p.csv");
     CHECK(std::count(csv.begin(), csv.end(), '\n') == 501);
+    fs::copy(scene.folder() / "release.geojson", scene.folder() / "release.json");
+    const Outcome input = scene.frana("particles CASE --set release.0.outline=release.json --out release.json");
+    CHECK(input.code == 2);
+    CHECK_THAT(input.err, Contains("--out release.json: found a file that this command reads"));
+    CHECK(text_of(scene.folder() / "release.json") == text_of(scene.folder() / "release.geojson"));
     const Outcome wrong = scene.frana("particles CASE --out p.xyz");
     CHECK(wrong.code == 2);
     CHECK_THAT(wrong.err, Contains("expected .h5, .json, .csv or .vtp"));
@@ -199,6 +242,22 @@ TEST_CASE("verify names the problem that was meant, writes JSON with the contrac
     const Outcome unknown = scene.frana("verify stokr");
     CHECK(unknown.code == 2);
     CHECK_THAT(unknown.err, Contains("did you mean stoker?"));
+    const Outcome known = scene.frana("verify --list");
+    CHECK_THAT(known.out, Contains("energy_line        stands for energy_parabola, energy_hockey, energy_avaframe: "));
+    for (const char* alias : {"dam_obstacle ", "jaumann_shear ", "unconfined_compression "})
+        CHECK_THAT(known.out, Contains(alias));
+    CHECK_THAT(scene.frana("verify energy_lin").err, Contains("did you mean energy_line?"));
+    CHECK(frana::verify::without_aliases({"energy_hockey", "energy_line", "ritter"}) ==
+          std::vector<std::string>{"energy_hockey", "energy_parabola", "energy_avaframe", "ritter"});
+    for (const frana::verify::Alias& alias : frana::verify::aliases()) {
+        CHECK(frana::verify::find_problem(alias.name) == nullptr);
+        for (const std::string& name : alias.problems) CHECK(frana::verify::find_problem(name) != nullptr);
+    }
+    const Outcome line = scene.frana("verify energy_line --cells 40 --json line.json");
+    const auto three = nlohmann::json::parse(text_of(scene.folder() / "line.json"));
+    REQUIRE(three.size() == 3);
+    CHECK(three[0]["name"] == "energy_parabola");
+    CHECK(three[2]["name"] == "energy_avaframe");
     const Outcome done = scene.frana("verify stoker --cells 50,100 --json v.json --table v.txt");
     CHECK(done.code == 0);
     std::ifstream file(scene.folder() / "v.json");

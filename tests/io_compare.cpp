@@ -206,6 +206,8 @@ TEST_CASE("What cannot be compared leaves with 2, one sentence, and the run as i
     refused("run --survey footprint.geojson --path dot.geojson", "dot.geojson: ");
     refused("run --survey footprint.geojson --deposit gone.tif", "gone.tif: no such file");
     refused("run --survey footprint.geojson --deposit footprint.geojson", "footprint.geojson: cannot be opened");
+    refused("run --survey footprint.geojson --json footprint.geojson", "found a file that this command reads");
+    refused("run --survey footprint.geojson --json run/rasters/peak_depth.tif", "found a file that this command reads");
     refused("nowhere --survey footprint.geojson", "nowhere/run.json: cannot be read");
     CHECK(slope.frana("compare run").code == 2);
     CHECK(contents(slope.run_dir()) == before);

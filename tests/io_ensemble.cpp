@@ -259,6 +259,50 @@ TEST_CASE("runs that fail are counted and bound the maps, and stop no other", "[
     CHECK(Json::parse(text_of(pond.path("many/ensemble.json")))["failed"] == 2);
 }
 
+TEST_CASE("runs that still move at time.end are told, whether or not they may stop at rest", "[ensemble]") {
+    const PlaneCase plane;
+    const std::string stops = GENERATE("true", "false");
+    CAPTURE(stops);
+    plane.write("stop_at_rest = " + stops + "\n[material.bed]\nlaw = \"coulomb\"\nmu = 0.05\n");
+    std::string text = text_of(plane.file());  // after 2 s all are slower than two cells in that time
+    frana::write_text(plane.file(), text.replace(text.find("end = 2"), 7, "end = 12"));
+    frana::write_text(plane.folder() / "many.toml",
+                      "[ensemble]\ncase = \"case.toml\"\nmethod = \"grid\"\n[[ensemble.vary]]\nkey = "
+                      "\"material.bed.mu\"\ndistribution = \"discrete\"\nvalues = [0.05, 0.06, 3.0]\n");
+    const Outcome done = plane.frana("ensemble many.toml --out many");
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    CHECK(Json::parse(text_of(plane.folder() / "many/ensemble.json"))["not_at_rest"] == 2);
+    CHECK_THAT(done.out, Contains("2 still moved at time.end"));
+    REQUIRE(plane.frana("ensemble many.toml --out many --resume").code == 0);
+    CHECK(Json::parse(text_of(plane.folder() / "many/ensemble.json"))["not_at_rest"] == 2);
+}
+
+TEST_CASE("an ensemble replaces no files that no ensemble left, and no sample of another one", "[ensemble]") {
+    const Pond pond;
+    pond.write("many.toml", of_samples(2));
+    REQUIRE(pond.frana("run case.toml --out run --quiet").code == 0);
+    const std::string report = text_of(pond.path("run/report.md"));
+    for (const char* how : {"--out run", "--out run --resume"}) {
+        const Outcome refused = pond.frana(std::string("ensemble many.toml ") + how);
+        CHECK(refused.code == 2);
+        CHECK_THAT(refused.err, Contains("run: found figures/") && Contains("which an ensemble would replace"));
+    }
+    CHECK(text_of(pond.path("run/report.md")) == report);
+    CHECK_FALSE(fs::exists(pond.path("run/shards")));
+
+    REQUIRE(pond.frana("ensemble many.toml --out many --quiet").code == 0);
+    REQUIRE(pond.frana("ensemble many.toml --out many --again 1").code == 0);
+    const std::string sample = text_of(pond.path("many/sample_1/case.toml"));
+    pond.write("other.toml", of_samples(3));
+    const Outcome other = pond.frana("ensemble other.toml --out many --again 1");
+    CHECK(other.code == 2);
+    CHECK_THAT(other.err, Contains("\"samples 2\" where now it is \"samples 3\""));
+    CHECK(text_of(pond.path("many/sample_1/case.toml")) == sample);
+    REQUIRE(pond.frana("ensemble other.toml --out empty --again 1").code == 0);
+    CHECK_THAT(pond.frana("ensemble many.toml --out empty --again 1").err, Contains("found another case there"));
+}
+
 TEST_CASE("an ensemble's forecast, job script and mistakes", "[ensemble]") {
     const Pond pond;
     pond.write("many.toml", depths);

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "catch.h"
 #include "observe/table.h"
@@ -47,6 +48,40 @@ struct Flood : PlaneCase {
 Json record_of(const fs::path& run_dir) { return Json::parse(text_of(run_dir / "run.json")); }
 
 }  // namespace
+
+TEST_CASE("The runout of a flood is that from its line, in all commands", "[program][inflow][converge]") {
+    const Flood plane;
+    const fs::path study = plane.folder() / "study", dir = study / "cell_4";
+    const Outcome run = plane.frana("converge CASE --cells 5,4 --quiet --out " + study.string());
+    INFO(run.err);
+    REQUIRE(run.code == 0);
+    CHECK_THAT(run.out, !Contains("nan"));
+    CHECK(record_of(dir)["results"]["start"] == Json({40.0, 50.0}));
+    const Json converged = Json::parse(text_of(study / "converge.json"));
+    const double runout = converged["runout"][1];
+    CHECK(runout > 20.0);
+    write_text(plane.folder() / "survey.geojson",
+               R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry":
+               {"type": "Polygon", "coordinates": [[[40, 30], [80, 30], [80, 70], [40, 70], [40, 30]]]}}]})");
+    REQUIRE(plane.frana("compare " + dir.string() + " --survey survey.geojson").code == 0);
+    const Json compared = Json::parse(text_of(dir / "compare.json"));
+    CHECK(compared["runout_path"] == "steepest path from where material comes in");
+    CHECK(compared["runout_simulated"].get<double>() == Approx(runout));
+    write_text(plane.folder() / "many.toml",
+               "[ensemble]\ncase = \"case.toml\"\nmethod = \"grid\"\n[[ensemble.vary]]\nkey = \"material.bed.mu\"\n"
+               "distribution = \"discrete\"\nvalues = [0.05]\n");
+    const Outcome ensemble = plane.frana("ensemble many.toml --quiet --out many");
+    INFO(ensemble.err);
+    REQUIRE(ensemble.code == 0);
+    std::istringstream rows(text_of(plane.folder() / "many" / "runs.csv"));
+    std::string names, row;
+    std::getline(rows, names), std::getline(rows, row);
+    std::istringstream heads(names), fields(row);
+    double of_ensemble = 0.0;
+    for (std::string head, field; std::getline(heads, head, ',') && std::getline(fields, field, ',');)
+        if (head == "runout_m") of_ensemble = std::stod(field);
+    CHECK(of_ensemble == Approx(converged["runout"][0].get<double>()).margin(5.0));  // by a path on cells of 5 m
+}
 
 TEST_CASE("A flood leaves its budget, and a section its table, figure and lines in the report", "[program][inflow]") {
     const Flood plane;

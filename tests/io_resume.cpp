@@ -128,8 +128,11 @@ TEST_CASE("a run until some time that goes on later leaves what one run leaves",
     fs::rename(folder.out(), folder.path() / "whole");
     const std::string until = GENERATE("2", "1.77", "0.3");
     CAPTURE(until);
-    REQUIRE(folder.run("--until " + until).code == 0);
-    CHECK(folder.json()["exit_reason"] == "end");
+    const Outcome part = folder.run("--until " + until);
+    REQUIRE(part.code == 0);
+    CHECK(folder.json()["exit_reason"] == "until");
+    const std::string said = "stopped by --until at " + until + " of ";
+    CHECK_THAT(text_of(folder.out() / "report.md"), Contains(said) && Contains("; --resume goes on"));
     const Outcome resumed = folder.run("--resume");
     CHECK(resumed.err.empty());
     REQUIRE(resumed.code == 0);
@@ -354,7 +357,7 @@ TEST_CASE("a disk that is full while a state is kept leaves the earlier one, and
     CheckpointKeeper keeper(folder.path(), labels, std::chrono::duration<double>(1e-9), nullptr);
     const SmallDisk disk(40000);  // more than any other file of this run needs
     const RunRecord record = go(again, keeper);
-    CHECK(record.summary.reason == "end");
+    CHECK(record.summary.reason == "until");  // the scene ends before the case's time.end
     CHECK(record.summary.last.time == 2.0);
     CHECK(text_of(state) == before);
     CHECK(record.checkpoints.written == 0);

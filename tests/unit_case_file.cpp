@@ -209,7 +209,7 @@ TEST_CASE("Lists are checked value by value", "[case]") {
     CHECK(problem_of(least + "[[gauge]]\nname = \"a\"\npoint = [1]\n")
               .find("found a list of 1 value; expected a list of 2") != std::string::npos);
     CHECK(problem_of(least + "[[profile]]\nname = \"a b\"\nline = [[0, 0], [1, 1]]\n")
-              .find("profile.0.name: found the text \"a b\"; expected a text in quotes of letters") !=
+              .find("profile.0.name: found the text \"a b\"; expected a text in quotes of up to 200 letters") !=
           std::string::npos);
     CHECK(problem_of(least + "[[profile]]\nname = \"a\"\nline = [[0, 0], [0, 0]]\n").find("comes twice") !=
           std::string::npos);
@@ -239,6 +239,13 @@ TEST_CASE("--set overrides any key, and its mistakes are those of --set", "[case
     CHECK(problem_of(least, {"grid.cell=-1"}) ==
           "--set grid.cell: found -1; expected a number above 0 [m]; choose a value in this range");
     CHECK(problem_of(least, {"grid.cel=1"}).find("--set grid.cel: found an unknown key; ") == 0);
+    const std::string no_table = problem_of(least, {"foo.bar=1"});
+    CHECK(no_table.find("--set foo.bar: found an unknown key; expected one of the tables ") == 0);
+    CHECK(no_table.find(" terrain, ") != std::string::npos);
+    const std::string long_name =
+        problem_of(least + "[[gauge]]\npoint = [0, 0]\nname = \"" + std::string(201, 'a') + "\"\n");
+    CAPTURE(long_name);
+    CHECK(long_name.find("expected a text in quotes of up to 200 letters, digits, - and _") != std::string::npos);
     CHECK(problem_of(least, {"grid.cell"}) ==
           "--set grid.cell: found no key and value; expected key=value; write it like --set grid.cell=2.5");
     CHECK(problem_of(least, {"release.depth=2"}) ==

@@ -102,6 +102,21 @@ TEST_CASE("A flow that runs 50 m too far is told so, and both of its extents are
     CHECK(c.remarks.empty());
 }
 
+TEST_CASE("Where nothing lay at the start, the path begins where material comes in") {
+    ComparedFlow flow(350);
+    for (double& t : flow.arrival.values)
+        if (t == 0.0) t = 1.0;
+    Survey survey;
+    survey.footprint = {{box(50, 50, 300, 150)}, "", "survey.geojson"};
+    SimulatedRun run = flow.run();
+    CHECK(std::isnan(compare(run, survey).trace.runout));
+    run.start = Vec2(66, 104);
+    const Comparison c = compare(run, survey);
+    CHECK(c.path_source == "steepest path from where material comes in");
+    CHECK(c.trace.runout == Approx(350 - 65));
+    CHECK(c.surveyed_runout == Approx(300 - 65));
+}
+
 TEST_CASE("A given path is used downhill, and its end is not the end of the runout") {
     const ComparedFlow flow(350);
     Survey survey;

@@ -71,7 +71,15 @@ TEST_CASE("The side and the speed of an inflow may be given", "[scene][inflow]")
     CHECK(up.inflows[0].slope == Approx(-0.5));
     CHECK(up.inflows[0].time == std::vector<double>{0.0, 60.0});
     CHECK(up.inflows[0].speed[1] == Approx(5.0 / std::sqrt(1.25)));
+    const auto of_velocities = [](const Scene& scene) {
+        return std::count_if(scene.log.begin(), scene.log.end(), [](const std::string& remark) {
+            return remark.find("velocities of its table are not used") != std::string::npos;
+        });
+    };
+    CHECK(of_velocities(built(with(kLine + "table = \"q.csv\"\n"), folder.path())) == 1);
+    CHECK(of_velocities(built(with(kLine + "table = \"q.csv\"\nvelocity = \"normal\"\n"), folder.path())) == 0);
     const Scene number = built(with(kLine + "table = \"q.csv\"\nvelocity = 7\n"), folder.path());
+    CHECK(of_velocities(number) == 0);
     CHECK(number.inflows[0].speed == std::vector<double>(2, 7.0 / std::sqrt(1.25)));
 }
 

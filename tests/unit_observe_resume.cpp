@@ -130,6 +130,30 @@ TEST_CASE("an interrupted run keeps its state before its last frame, and goes on
     check_same(run_in(folder, plan, later), whole);
 }
 
+TEST_CASE("an interrupt is heard between outputs that one step passes, and who goes on shows the others", "[resume]") {
+    const RunPlan plan{1.05, 0.01, false};
+    const FreshFolder whole_folder, folder;
+    MemoryKeeper unused, keeper(false), later(false);
+    FakeScript script;
+    script.dt = 0.3, script.tells_step = true;
+    const Run whole = run_in(whole_folder, plan, unused, script);
+    CHECK(whole.summary.frames == 106);
+    CHECK(whole.summary.steps == 4);
+    Interrupt interrupt;
+    Index calls = 0;
+    FakeScript interrupted = script;
+    interrupted.on_step = [&](Index) {
+        if (++calls == 40) interrupt.request();  // 29 outputs, a step, and within the next
+    };
+    const Run stopped = run_in(folder, plan, keeper, interrupted, interrupt);
+    CHECK(stopped.summary.reason == "interrupted");
+    CHECK(calls == 40);
+    CHECK(stopped.summary.last.time < 0.45);
+    REQUIRE(keeper.states.size() == 1);
+    later.from = keeper.states.front();
+    check_same(run_in(folder, plan, later, script), whole);
+}
+
 TEST_CASE("a run that was cut short goes on as if it had not been", "[resume]") {
     const double end = GENERATE(0.5, 0.6, 0.25 * 3, 0.1, 1.0499999999);
     CAPTURE(end);

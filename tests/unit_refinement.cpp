@@ -119,6 +119,27 @@ TEST_CASE("Each part of the rule is asked for", "[refinement]") {
     CHECK_FALSE(converged_with(&CellFigures::runout, NAN));
 }
 
+TEST_CASE("Where no run has a runout the rule goes without, and says so", "[refinement]") {
+    std::vector<CellFigures> runs = {run_on(10), run_on(5)};
+    runs[0].runout = runs[1].runout = NAN;
+    Verdict verdict = judge(runs);
+    CHECK(verdict.converged);
+    CHECK(verdict.sentence ==
+          "Converged, and cells of 10 m are enough: between them and 5 m the footprints' IoU is 1.000, 0 % of the "
+          "deposit lies elsewhere, the peak depth differs by 0 % and the peak speed differs by 0 %. Runouts are not "
+          "known and were left out.");
+    runs[0].iou = 0.89;
+    CHECK(judge(runs).sentence ==
+          "Not converged: between cells of 10 and 5 m the footprints' IoU is 0.890 (expected 0.9 or more); add a finer "
+          "cell, such as 2.5 m. Runouts are not known and were left out.");
+    const std::string spread = spread_sentence("scheme.cfl", {0.2, 0.5}, runs);
+    CHECK(spread.find("m runouts are not known; up to") != std::string::npos);
+    runs[0].runout = 500.0, runs[0].iou = 1.0;
+    verdict = judge(runs);
+    CHECK_FALSE(verdict.converged);
+    CHECK(verdict.sentence.find("the runout is known on one of them only (expected") != std::string::npos);
+}
+
 TEST_CASE("Runs that differ in one key are said to lie apart by as many cells as their runouts do", "[refinement]") {
     std::vector<CellFigures> runs = {run_on(5.0), run_on(5.0), run_on(5.0)};
     runs[1].runout = 504.0, runs[2].iou = 0.93, runs[0].elsewhere = 0.06;

@@ -179,6 +179,23 @@ TEST_CASE("Releases off the terrain or without volume are refused", "[scene]") {
                                    "surface, and the CRS and place of the files"});
 }
 
+TEST_CASE("A line that crosses the terrain from beyond to beyond is on it; one that passes a corner is not",
+          "[scene]") {
+    const auto with_profile = [](const std::string& line) {
+        return with_release("depth = 1", "[[profile]]\nname = \"p\"\nline = " + line + "\n");
+    };
+    for (const char* line : {"[[-1000, 2075], [2000, 2075]]", "[[1100, 0], [1100, 9000]]",
+                             "[[900, 1950], [1300, 2250]]", "[[0, 0], [900, 2000], [1300, 2100]]"}) {
+        CAPTURE(line);
+        CHECK(problems_of(with_profile(line), slope_gis()).empty());
+    }
+    for (const char* line :
+         {"[[900, 2100], [1050, 2300]]", "[[1100, 0], [1100, 1900]]", "[[900, 1900], [900, 2300]]"}) {
+        CAPTURE(line);
+        REQUIRE(problems_of(with_profile(line), slope_gis()).size() == 1);
+    }
+}
+
 TEST_CASE("Problems of several files and places are listed together", "[scene]") {
     const std::string rest =
         "[[release]]\noutline = \"none.geojson\"\ndepth = 1\n[[gauge]]\nname = \"g\"\npoint = [0, 0]\n"

@@ -86,6 +86,35 @@ TEST_CASE("A release on a cliff, or as deep as a valley, is remarked upon", "[sc
     CHECK(remarks(case_of(coulomb + "bed.mu = 0.4", "99"), slope(0.5), "found a depth").empty());
 }
 
+TEST_CASE("Fields that no frame of the case has are remarked upon", "[scene][remarks]") {
+    const auto of = [](const std::string& fields, const std::string& material = "bed.mu = 0.4") {
+        return case_of(coulomb + material, "2.0", "[output]\nfields = [" + fields + "]");
+    };
+    CHECK(
+        remark(of("\"stress\""), slope(0.5), "output.fields").find("material.rheology.law = \"none\" has no stress") !=
+        std::string::npos);
+    CHECK(remark(of("\"water_depth\", \"depth\""), slope(0.5), "output.fields").find("found \"water_depth\"") !=
+          std::string::npos);
+    CHECK(remarks(of("\"damage\", \"cohesion\", \"eroded_depth\", \"effective_stress\""), slope(0.5), "output.fields")
+              .size() == 4);
+    CHECK(remarks(of("\"depth\", \"id\", \"arrival_time\""), slope(0.5), "output.fields").empty());
+    const std::string viscous =
+        "bed.mu = 0.4\nrheology.law = \"bingham\"\nrheology.viscosity = 5\nrheology.yield_stress = 10";
+    CHECK(remarks(of("\"stress\", \"effective_stress\"", viscous), slope(0.5), "output.fields").empty());
+}
+
+TEST_CASE("A release without an outline is said to be all of the terrain", "[scene][remarks]") {
+    const std::string rest = "[time]\nend = 20\n", head = "[terrain]\ndem = \"dem.tif\"\n[[release]]\n";
+    const std::string said = remark(head + "depth = 0.01\n" + rest, slope(0.5), "no outline");
+    CHECK(said.find("so that all of the terrain is released: ") != std::string::npos);
+    CHECK(said.find(" m2; expected an outline; give one") != std::string::npos);
+    FakeGis gis = slope(0.5);
+    gis.rasters["depth.tif"] = sampled({20, 20, 1005, 2005, 10}, [](double, double) { return 2.0; });
+    CHECK(remarks(head + "depth = \"depth.tif\"\n" + rest, gis, "no outline").empty());
+    CHECK(remarks(head + "surface = 150\n" + rest, slope(0.5), "no outline").empty());
+    CHECK(remarks(case_of(coulomb + "bed.mu = 0.4"), slope(0.5), "no outline").empty());
+}
+
 TEST_CASE("Fewer than 100 particles are remarked upon", "[scene][remarks]") {
     const auto of = [](int count) {
         return case_of(coulomb + "bed.mu = 0.4", "2",

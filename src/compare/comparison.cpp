@@ -56,15 +56,17 @@ private:
                 remark("{}: the path is drawn uphill and was turned round", survey_.path_source);
             }
         } else if (run_.bed && run_.arrival_time) {
-            const std::optional<Vec2> start = release_middle(*run_.arrival_time);
+            const std::optional<Vec2> release = release_middle(*run_.arrival_time),
+                                      start = release ? release : run_.start;
             if (start) result_.path = steepest_path(*run_.bed, *start);
             if (length_of(result_.path) > 0.0)
-                result_.path_source = "steepest path from the release";
+                result_.path_source =
+                    fmt::format("steepest path from {}", release ? "the release" : "where material comes in");
             else
                 result_.path.clear();
         }
         if (result_.path.empty())
-            remark("no steepest path from the release is known, so no runout; give one with --path");
+            remark("no steepest path from the start of the flow is known, so no runout; give one with --path");
     }
 
     /// NaN where there is no terrain.

@@ -20,12 +20,13 @@ struct SimulatedRun {
     double limit = 0.1;                       ///< deeper counts as covered [m]
     const Raster* bed_change = nullptr;       ///< or null: the bed is rock
     const Raster* deposited_depth = nullptr;  ///< or null: nothing became bed; lies with the final depth
+    std::optional<Vec2> start;                ///< of the steepest path where nothing was released at the start
 };
 
 /// What was surveyed.
 struct Survey {
     Polygons footprint;                ///< polygons that do not overlap
-    std::optional<Polyline> path;      ///< for the runout; nothing: the steepest one from the release
+    std::optional<Polyline> path;      ///< for the runout; nothing: the steepest one from the start of the flow
     std::optional<Raster> deposit;     ///< thickness [m] on pixels of the run, maybe more around them
     std::string path_source;           ///< file of the path
     std::string deposit_source;        ///< file of the thickness

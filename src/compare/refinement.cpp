@@ -46,23 +46,32 @@ struct Difference {
     std::string found, expected;
 };
 
+/// Nothing where neither has one: there is nothing to tell them apart by.
+std::optional<Difference> of_runouts(const CellFigures& run, const CellFigures& finest, const ConvergenceRule& rule) {
+    if (std::isnan(run.runout) && std::isnan(finest.runout)) return std::nullopt;
+    const double change = std::abs(run.runout - finest.runout), most = rule.runout_cells * run.cell;
+    return Difference{change <= most,
+                      std::isnan(change) ? "the runout is known on one of them only"
+                                         : fmt::format("the runout differs by {:.3g} m", change),
+                      fmt::format("{:g} m at most", most)};
+}
+
 std::vector<Difference> differences(const CellFigures& run, const CellFigures& finest, const ConvergenceRule& rule) {
-    const double runout = std::abs(run.runout - finest.runout), most_runout = rule.runout_cells * run.cell;
     const double depth = relative(run.peak_depth, finest.peak_depth);
     const double speed = relative(run.peak_speed, finest.peak_speed);
     const auto peak = [&](const char* name, double change) {
         return Difference{change <= rule.peaks, fmt::format("the peak {} differs by {:.2g} %", name, 100.0 * change),
                           fmt::format("{:g} % at most", 100.0 * rule.peaks)};
     };
-    return {
-        {runout <= most_runout, fmt::format("the runout differs by {:.3g} m", runout),
-         fmt::format("{:g} m at most", most_runout)},
+    std::vector<Difference> all = {
         {run.iou >= rule.iou, fmt::format("the footprints' IoU is {:.3f}", run.iou),
          fmt::format("{:g} or more", rule.iou)},
         {run.elsewhere <= rule.elsewhere, fmt::format("{:.2g} % of the deposit lies elsewhere", 100.0 * run.elsewhere),
          fmt::format("{:g} % at most", 100.0 * rule.elsewhere)},
         peak("depth", depth),
         peak("speed", speed)};
+    if (const auto runouts = of_runouts(run, finest, rule)) all.insert(all.begin(), *runouts);
+    return all;
 }
 
 bool agree(const CellFigures& run, const CellFigures& finest, const ConvergenceRule& rule) {
@@ -87,11 +96,13 @@ std::string sentence_on(const CellFigures& run, const CellFigures& finest, const
             parts.push_back(d.found);
         else if (!d.allowed)
             parts.push_back(fmt::format("{} (expected {})", d.found, d.expected));
+    const char* const without =
+        std::isnan(run.runout) && std::isnan(finest.runout) ? " Runouts are not known and were left out." : "";
     if (converged)
-        return fmt::format("Converged, and cells of {:g} m are enough: between them and {:g} m {}.", run.cell,
-                           finest.cell, listed(parts));
-    return fmt::format("Not converged: between cells of {:g} and {:g} m {}; add a finer cell, such as {:g} m.",
-                       run.cell, finest.cell, listed(parts), 0.5 * finest.cell);
+        return fmt::format("Converged, and cells of {:g} m are enough: between them and {:g} m {}.{}", run.cell,
+                           finest.cell, listed(parts), without);
+    return fmt::format("Not converged: between cells of {:g} and {:g} m {}; add a finer cell, such as {:g} m.{}",
+                       run.cell, finest.cell, listed(parts), 0.5 * finest.cell, without);
 }
 
 }  // namespace
@@ -171,14 +182,17 @@ std::string spread_sentence(const std::string& key, const std::vector<double>& v
         elsewhere = std::max(elsewhere, runs[k].elsewhere), iou = std::min(iou, runs[k].iou);
     }
     const double spread = runout_spread(runs);
-    const bool agrees = spread <= rule.runout_cells;
+    const std::string apart = std::isnan(spread) ? "runouts are not known"
+                              : spread <= rule.runout_cells
+                                  ? fmt::format("the runouts lie {:.2g} cells apart", spread)
+                                  : fmt::format(
+                                        "the runouts lie {:.2g} cells apart (expected {:g} at most: so far "
+                                        "the answer hangs on this choice)",
+                                        spread, rule.runout_cells);
     return fmt::format(
-        "With {} of {} on cells of {:g} m the runouts lie {:.2g} cells apart{}; up to {:.2g} % of the deposit "
-        "lies elsewhere, and the footprints' IoU is {:.3f} or more.",
-        key, listed(names), runs.front().cell, spread,
-        agrees ? ""
-               : fmt::format(" (expected {:g} at most: so far the answer hangs on this choice)", rule.runout_cells),
-        100.0 * elsewhere, iou);
+        "With {} of {} on cells of {:g} m {}; up to {:.2g} % of the deposit lies elsewhere, and the footprints' IoU is "
+        "{:.3f} or more.",
+        key, listed(names), runs.front().cell, apart, 100.0 * elsewhere, iou);
 }
 
 Verdict judge(const std::vector<CellFigures>& runs, const ConvergenceRule& rule) {

@@ -171,6 +171,11 @@ private:
             table.wrong("case", fmt::format("found no file \"{}\"", event.runs.case_file.string()),
                         "expected a case file with a [survey]",
                         "correct the name; it is taken from the folder of this file");
+        const auto same = [&](const SurveyedEvent& other) { return other.name == event.name; };
+        if (std::any_of(plan_.events.begin(), plan_.events.end(), same))
+            table.wrong("name", fmt::format("found \"{}\" a second time", event.name),
+                        "expected another name for each event, since one that is taken twice counts twice",
+                        "give name = ..., or take one of them out");
         if (!(event.weight > 0.0))
             table.wrong("weight", fmt::format("found {:g}", event.weight), "expected a number above 0", "give one");
         table.refuse_others("here");

@@ -14,6 +14,7 @@
 #include "run/run_loop.h"
 #include "run/simulation.h"
 #include "scene/build_scene.h"
+#include "scene/flow_start.h"
 #include "terrain/part_of.h"
 
 namespace frana {
@@ -42,23 +43,6 @@ public:
 private:
     const std::vector<std::string>& fields_;
 };
-
-/// The start of the path: the particle nearest to the middle of all, or the middle of the first inflow.
-std::optional<Vec2> start_of(const Scene& scene) {
-    Seeds all;
-    for (const Seeds* seeds : scene.all_particles()) all.append(*seeds, 0, seeds->count());
-    if (all.count() == 0) {
-        const bool by_line = !scene.inflows.empty() && !scene.inflows.front().line.empty();
-        return by_line ? std::optional<Vec2>(scene.inflows.front().middle()) : std::nullopt;
-    }
-    const auto place = [&](std::size_t k) { return Vec2(all.x[k], all.y[k]); };
-    Vec2 middle(0, 0);
-    for (std::size_t k = 0; k < all.x.size(); ++k) middle += place(k) / static_cast<double>(all.count());
-    std::size_t nearest = 0;
-    for (std::size_t k = 1; k < all.x.size(); ++k)
-        if ((place(k) - middle).squaredNorm() < (place(nearest) - middle).squaredNorm()) nearest = k;
-    return place(nearest);
-}
 
 /// Nothing is written of a run of an ensemble, and nothing is asked of it on the way.
 std::vector<std::string> quiet(std::vector<std::string> sets) {
@@ -138,7 +122,7 @@ void run_scene(const EnsemblePlan& plan, const EnsembleBase& base, const Scene& 
     steps.cell = scene.bed.geometry.cell;
     steps.rest_fraction = scene.rest_fraction;
     const RunSummary run = frana::run(*simulation, steps, observers, interrupt, progress);
-    result.reason = run.reason, result.message = run.failure_text;
+    result.reason = run.reason, result.message = run.failure_text, result.still_moves = run.still_moves();
     result.time = run.last.time, result.steps = run.steps;
     result.gauges = gauges.peaks();
     measure(scene, base, run, peaks, result);
@@ -164,10 +148,9 @@ EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, co
     base.whole = scene.wider ? scene.wider->grid : scene.bed.geometry;
     base.title = scene.title;
     base.footprint_depth = scene.output.footprint_depth;
-    base.stops_at_rest = scene.stop_at_rest;
     base.gauges = scene.gauges;
     base.barriers = scene.barriers;
-    base.start = start_of(scene);
+    base.start = flow_start(scene);
     if (base.start) base.path = steepest_path(scene.bed, *base.start);
     if (!(length_of(base.path) > 0.0)) base.path.clear();
     base.footprint = scene.survey;

@@ -20,7 +20,6 @@ struct EnsembleBase {
     Raster bed;          ///< what of the terrain the case holds at its start
     GridGeometry whole;  ///< nodes of all of the terrain; the maps' pixels
     std::string title;
-    bool stops_at_rest = false;         ///< a run that goes on to time.end still moves
     double footprint_depth = 0.1;       ///< [m]
     std::optional<Vec2> start;          ///< the middle of the releases
     std::optional<Polygons> footprint;  ///< surveyed, where the case has one
@@ -51,6 +50,7 @@ struct SampleResult {
     double max_depth = 0.0, max_speed = 0.0;  ///< [m], [m/s]
     double left_share = 0.0;                  ///< of the mass, that left the terrain [1]
     double mass_error = 0.0;                  ///< of the budget, relative [1]
+    bool still_moves = false;                 ///< RunSummary's
     std::optional<double> iou;                ///< of the footprint with the surveyed one, where there is one [1]
     std::optional<double> boundary;           ///< mean distance of their outlines; nothing where nothing flowed [m]
     std::vector<GaugePeak> gauges;            ///< of the base's

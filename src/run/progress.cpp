@@ -87,7 +87,8 @@ void Progress::end(const Status& last, const std::string& reason) {
     if (style_ != Style::lines) redraw(last, wall_seconds());
     if (style_ == Style::json) return;
     if (style_ == Style::bar) stream_ << '\n';
-    if (reason != "end") stream_ << fmt::format("stopped at t = {:.6g} s: {}\n", last.time, reason);
+    if (reason != "end" && reason != "until")
+        stream_ << fmt::format("stopped at t = {:.6g} s: {}\n", last.time, reason);
     stream_ << std::flush;
 }
 

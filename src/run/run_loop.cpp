@@ -150,6 +150,7 @@ void Loop::step_past_outputs() {
     double shown = time(), output_time = 0.0;
     do {  // a step may turn out shorter than it was said to be, and the next one pass more outputs
         if (own_steps()) shown = std::max(shown, show_outputs_aside());
+        if (own_steps() && interrupt_.requested()) return;  // outputs that the step would pass are left to who goes on
         output_time = next_output_time();
         advance(own_steps() ? plan_.end : output_time);
         show_step();
@@ -161,13 +162,13 @@ void Loop::step_past_outputs() {
 }
 
 /// Goes to the outputs that the next step would pass, hits and shows them, and comes back to where it was. Returns the
-/// time of the last frame shown, or the present time.
+/// time of the last frame shown, or the present time. There may be thousands: an interrupt is heard after each.
 double Loop::show_outputs_aside() {
     const double past = std::min(time() + simulation_.longest_step(), plan_.end);
     if (!(next_output_time() < past)) return time();
     PhaseTime& cost = summary_.output[frame_phase_];
     timed(cost, [&] { aside_.save(simulation_); });
-    for (double next = next_output_time(); next < past; next = next_output_time()) {
+    for (double next = next_output_time(); next < past && !interrupt_.requested(); next = next_output_time()) {
         timed(cost, [&] {
             while (time() < next) step(next);
         });
@@ -271,7 +272,7 @@ void Loop::advance(double until) {
 std::string Loop::reason_to_stop() const {
     const Status& now = simulation_.status();
     const bool moved = now.step > summary_.first.step;  // a release that has not yet started is not at rest
-    if (now.time >= plan_.end) return "end";
+    if (now.time >= plan_.end) return plan_.cut_short ? "until" : "end";
     if (now.particles == 0 && !(now.mass > 0.0) && !simulation_.more_comes())
         return "left";  // free water may flow on alone
     if (plan_.stop_at_rest && moved && rest_.at_rest()) return "rest";
@@ -332,7 +333,8 @@ void Loop::show_frame() {
 }
 
 void Loop::show_end() {
-    if (simulation_.status().step != shown_step_) show_frame();
+    const bool shown_later = summary_.last.time > time();  // aside: time must not go back in the frames
+    if (simulation_.status().step != shown_step_ && !shown_later) show_frame();
     Frame last = frame();
     last.number = summary_.frames - 1;
     for (std::size_t i = 0; i < observers_.size(); ++i) timed(summary_.output[i], [&] { observers_[i]->end(last); });

@@ -31,7 +31,7 @@ struct RunPlan {
 
 /// What happened, for run.json and the report.
 struct RunSummary {
-    /// "end", "rest", "interrupted", "left" (no material remains), "numerics" (numbers that are not finite) or "refused"
+    /// "end", "until" (its plan was cut short), "rest", "interrupted", "left" (no material remains), "numerics" (numbers that are not finite) or "refused"
     /// (what a stage or a larger terrain asks for on the way)
     std::string reason;
     std::exception_ptr failure;  ///< the NumericsError, or of a refusal the UserError
@@ -47,6 +47,9 @@ struct RunSummary {
     std::vector<PhaseTime> solver;  ///< wall time by the solver's phases but "frame"
     std::vector<PhaseTime> output;  ///< wall time by observer, "frame": gathering what they look at, "checkpoint"
     std::string started, ended;     ///< wall clock, UTC, ISO 8601
+
+    /// The time was over before the mass had come to rest.
+    bool still_moves() const { return (reason == "end" || reason == "until") && motion.share() > 0.0; }
 
     double output_seconds() const;
     double output_share() const { return wall_seconds > 0.0 ? output_seconds() / wall_seconds : 0.0; }

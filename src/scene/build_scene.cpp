@@ -55,6 +55,7 @@ public:
         require_room_for_all();
         problems_.throw_if_any();
         remark_on_releases(case_, built_.releases, scene_);
+        remark_on_fields(case_, scene_);
         cut_releases();
         return std::move(built_);
     }
@@ -358,7 +359,7 @@ private:
         for (Index i = 0; i < case_.count("profile"); ++i) {
             const std::string prefix = fmt::format("profile.{}.", i);
             const Polyline& line = case_.points(prefix + "line");
-            if (std::none_of(line.begin(), line.end(), [&](const Vec2& point) { return inside(point); }))
+            if (!comes_onto(line, terrain().pixel_extent()))
                 problems_.add(case_.place(prefix + "line"), "found no point of it on the terrain", extent_text(),
                               way_out);
             scene_.profiles.push_back({case_.word(prefix + "name"), line});

@@ -187,8 +187,9 @@ void CaseReader::read_leaf(const toml::node& node, const Parameter& parameter, c
 void CaseReader::refuse_unknown(const std::string& key, int line, const std::string& place) {
     const std::string plain = without_numbers(key);
     const std::string table = plain.find('.') == std::string::npos ? "" : plain.substr(0, plain.rfind('.'));
-    const std::string known = table.empty() ? "one of the tables " + joined(table_names())
-                                            : fmt::format("a key of [{}]: {}", table, joined(names_in(table)));
+    const std::vector<std::string> names = names_in(table);
+    const std::string known = table.empty() || names.empty() ? "one of the tables " + joined(table_names())
+                                                             : fmt::format("a key of [{}]: {}", table, joined(names));
     const std::string near = meant(plain);
     const std::string way_out = near.empty() ? "remove it, or see `frana describe`" : "did you mean " + near + "?";
     problems_.add(line, place, "found an unknown key", "expected " + known, way_out);

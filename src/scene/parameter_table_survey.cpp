@@ -14,7 +14,7 @@ void add_survey(Table& table) {
         "deposits are not compared"));
     table.push_back(absent(make("survey.path", Kind::path, "",
                                 "line along which runouts and changes of the bed are measured; besides the footprint"),
-                           "the steepest path from the release"));
+                           "the steepest path from the release or inflow"));
     table.push_back(absent(make("survey.bed_change", Kind::path, "",
                                 "raster of the difference of two surveys, after minus before, m; besides "
                                 "the footprint"),

@@ -99,7 +99,7 @@ std::string Parameter::expected() const {
         case Kind::text:
             return "a text in quotes";
         case Kind::name:
-            return "a text in quotes of letters, digits, - and _";
+            return fmt::format("a text in quotes of up to {} letters, digits, - and _", kLongestName);
         case Kind::choice:
             return "one of \"" + joined(choices, "\", \"") + "\"";
         case Kind::path:

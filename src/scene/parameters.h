@@ -13,6 +13,8 @@ namespace frana {
 /// What a case key can hold.
 using Value = std::variant<bool, double, std::string, std::vector<double>, std::vector<std::string>, std::vector<Vec2>>;
 
+constexpr std::size_t kLongestName = 200;  ///< of a name that files get: theirs have 255 letters at most
+
 enum class Kind {
     number,            ///< double
     integer,           ///< double without fraction

@@ -53,6 +53,11 @@ private:
         });
         if (!good) return {};
         if (!table.remark.empty()) scene_.log.push_back(table.remark);
+        if (!table.velocity.empty() && !given("velocity"))
+            scene_.log.push_back(
+                fmt::format("inflow {}: the velocities of its table are not used, since velocity is not given and the "
+                            "speed is that of uniform flow; give velocity = \"column\" to use them",
+                            inflow_.name));
         inflow_.time = table.time, inflow_.discharge = table.discharge;
         if (!attempt(problems, "velocity", [&] { set_speed(table); })) return {};
         return inflow_;

@@ -130,10 +130,7 @@ private:
         if (!case_.given(prefix + "line")) return;
         entry.line = case_.points(prefix + "line");
         const auto e = scene_.bed.geometry.pixel_extent();
-        const auto inside = [&](const Vec2& p) {
-            return p.x() >= e[0] && p.x() <= e[2] && p.y() >= e[1] && p.y() <= e[3];
-        };
-        if (std::none_of(entry.line.begin(), entry.line.end(), inside))
+        if (!comes_onto(entry.line, e))
             problems_.add(case_.place(prefix + "line"), "found no point of it on the terrain",
                           "expected it within " + extent_text(), "correct the coordinates");
     }

@@ -28,10 +28,15 @@ bool friction_differs(const CaseFile& file);
 /// nothing differs in space nothing happens.
 void read_friction(const CaseFile& file, const GisReader& reader, double released, Scene& scene, Problems& problems);
 
+/// Whether a line, or a point of it, lies within xmin, ymin, xmax, ymax: its vertices may all lie beyond.
+bool comes_onto(const Polyline& line, const std::array<double, 4>& extent);
+
 /// Remarks on a terrain that may not be what was meant, on the material's numbers, and on releases that have their
 /// particles; they go to the scene's log.
 void remark_on_terrain(const CaseFile& file, Scene& scene);
 void remark_on_material(const CaseFile& file, Scene& scene);
+/// A remark on each field of the output that no frame of this case has.
+void remark_on_fields(const CaseFile& file, Scene& scene);
 void remark_on_releases(const CaseFile& file, const std::vector<ReleaseSummary>& releases, Scene& scene);
 /// A remark on the pixels without data where a release claims material.
 void remark_on_gaps(const Raster& field, const NodeMarks& claimed, const std::string& place,

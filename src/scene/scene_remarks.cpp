@@ -94,6 +94,34 @@ void remark_on_kind(const CaseFile& file, Scene& scene) {
     }
 }
 
+/// Why no frame of the scene has a field; empty: one has.
+std::string why_without(const Scene& scene, const std::string& field) {
+    const auto is = [&](std::initializer_list<const char*> names) {
+        return std::find(names.begin(), names.end(), field) != names.end();
+    };
+    if (is({"stress"}) && !scene.structure && !scene.solid && std::holds_alternative<rheology::None>(scene.rheology))
+        return "material.rheology.law = \"none\" has no stress";
+    if (is({"effective_stress"}) && !scene.structure && std::holds_alternative<rheology::None>(scene.rheology))
+        return "material.rheology.law = \"none\" has no stress of columns";
+    if (is({"damage", "cohesion"}) && !scene.structure)
+        return "material.structure.law = \"none\" holds nothing together";
+    if (is({"water_depth", "water_velocity"}) && !scene.water) return "there is no free water";
+    if (is({"bed_change", "eroded_depth", "deposited_depth"}) && !scene.bed_changes()) return "the bed does not change";
+    return "";
+}
+
+/// A depth without an outline is that of all of the terrain, which is seldom meant.
+void remark_on_whole_terrain(const CaseFile& file, const ReleaseSummary& release, Scene& scene) {
+    const std::string prefix = fmt::format("release.{}.", release.table);
+    for (const char* bound : {"outline", "mask", "surface"})
+        if (file.given(prefix + bound)) return;
+    if (file.is_text(prefix + "depth")) return;
+    scene.log.push_back(fmt::format(
+        "{}: found no outline, so that all of the terrain is released: {:.6g} m3 on {:.6g} m2; expected an "
+        "outline; give one, unless this is meant",
+        file.table_place(fmt::format("release.{}", release.table)), release.report.volume, release.report.area));
+}
+
 }  // namespace
 
 void remark_on_terrain(const CaseFile& file, Scene& scene) {
@@ -129,11 +157,20 @@ void remark_on_material(const CaseFile& file, Scene& scene) {
     remark_on_kind(file, scene);
 }
 
+void remark_on_fields(const CaseFile& file, Scene& scene) {
+    for (const std::string& field : scene.output.fields)
+        if (const std::string why = why_without(scene, field); !why.empty())
+            scene.log.push_back(fmt::format(
+                "{}: found \"{}\"; expected a field of this case, since {}; frames go without it, so take it out",
+                file.place("output.fields"), field, why));
+}
+
 void remark_on_releases(const CaseFile& file, const std::vector<ReleaseSummary>& releases, Scene& scene) {
     for (const ReleaseSummary& release : releases) {
         const std::string place = file.table_place(fmt::format("release.{}", release.table));
         remark_on(scene.log, Remark::release_slope, place, {release.slope_max_deg});
         remark_on(scene.log, Remark::release_depth, place, {release.max_depth});
+        remark_on_whole_terrain(file, release, scene);
     }
     Index count = 0;
     for (const Seeds* seeds : scene.all_particles()) count += seeds->count();

@@ -36,6 +36,26 @@ double rise_across(const Polyline& line, const Raster& bed) {
     return length > 0.0 ? sum / length : 0.0;
 }
 
+/// The piece of each segment that lies between two bounds, axis by axis (Liang & Barsky 1984).
+bool comes_onto(const Polyline& line, const std::array<double, 4>& extent) {
+    for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+        double from = 0.0, to = 1.0;
+        for (int axis = 0; axis < 2; ++axis) {
+            const double start = line[k][axis], way = line[k + 1][axis] - start;
+            const double low = extent[static_cast<std::size_t>(axis)] - start,
+                         high = extent[static_cast<std::size_t>(axis) + 2] - start;
+            if (way == 0.0) {
+                if (low > 0.0 || high < 0.0) to = -1.0;
+                continue;
+            }
+            from = std::max(from, std::min(low / way, high / way));
+            to = std::min(to, std::max(low / way, high / way));
+        }
+        if (from <= to) return true;
+    }
+    return false;
+}
+
 std::vector<Section> read_sections(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems) {
     std::vector<Section> sections;
     const auto e = (scene.wider ? scene.wider->grid : scene.bed.geometry).pixel_extent();
@@ -49,7 +69,7 @@ std::vector<Section> read_sections(const CaseFile& file, const GisReader& reader
         const auto inside = [&](const Vec2& point) {
             return point.x() >= e[0] && point.x() <= e[2] && point.y() >= e[1] && point.y() <= e[3];
         };
-        const bool there = std::any_of(line.begin(), line.end(), inside);
+        const bool there = comes_onto(line, e);
         if (!there)
             problems.add(
                 file.place(prefix + "line"), "found no point of it on the terrain",

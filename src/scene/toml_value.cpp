@@ -104,9 +104,9 @@ private:
     std::optional<std::string> name(const toml::node& node) const {
         std::optional<std::string> value = text(node);
         if (!value) return std::nullopt;
-        const bool fit = !value->empty() && std::all_of(value->begin(), value->end(), [](unsigned char c) {
-            return std::isalnum(c) != 0 || c == '-' || c == '_';
-        });
+        const bool fit = !value->empty() && value->size() <= kLongestName &&
+                         std::all_of(value->begin(), value->end(),
+                                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; });
         if (!fit) return wrong(node, "files are named after it, so choose a plain name");
         return value;
     }

@@ -210,8 +210,9 @@ void DepthAveraged::arrive(const PointSums& points) {
     status_.p2g_momentum_error =
         points.p_abs > 0.0 ? std::hypot(nodes.px - points.px, nodes.py - points.py) / points.p_abs : 0.0;
     if (feed_) timed_("inflow", [&] { support_inflows(); });
-    timed_("depth", [&] { fold_walls(flow_); });
-    const NodeSums sums = raise_surface();
+    timed_("depth", [&] { fold_with_support(); });
+    NodeSums sums = raise_surface();
+    if (!supported_.empty()) timed_("inflow", [&] { leave_support_out(sums); });
     const FlowSpeeds speeds = timed_("peaks", [&] {
         put_peaks_aside();
         const FlowSpeeds all = update_peaks(flow_, steep_, curved_, status_.time, footprint_depth_, peaks_);
@@ -224,7 +225,7 @@ void DepthAveraged::arrive(const PointSums& points) {
     status_.particles = flow_.columns.count();
     status_.mass = points.mass;
     status_.momentum = {points.px, points.py};
-    status_.potential = sums.potential - potential_of_support();
+    status_.potential = sums.potential;
     status_.max_depth = sums.max_depth;
     status_.covered_area = sums.covered_area;
     status_.front = std::sqrt(sums.front2);

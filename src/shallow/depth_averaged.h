@@ -113,6 +113,7 @@ private:
     void serialize_sums(Archive& archive);
     void serialize_nodes(Archive& archive);
     void serialize_peaks(Archive& archive);
+    void serialize_support(Archive& archive);
     void adapt_points(bool due, bool fed);
     void erode(double dt);
     void detrain(double dt);
@@ -125,11 +126,16 @@ private:
     double place_late(const LateRelease& release, PointSums& came);
     void enter_added();
     void support_inflows();
+    void fold_with_support();
+    void leave_support_out(NodeSums& sums);
     double potential_of_support() const;
     struct Supported {
         Index k;
-        double before;
+        double own;
     };
+    Supported* supported(Index k);
+    const Supported* supported(Index k) const { return const_cast<DepthAveraged*>(this)->supported(k); }
+    double own_depth(Index k) const;
     bool is_support(const Supported& node) const;
     bool is_support(Index k) const;
     void put_peaks_aside();
@@ -168,7 +174,8 @@ private:
     Seeds added_;                       ///< from outside, that wait for the next step
     double mass_added_ = 0.0;           ///< that has entered [kg]
     bool aside_ = false;                ///< it comes back to a state that was put aside
-    std::vector<Supported> supported_;  ///< nodes with depth of what is still to come in; their mass without [kg]
+    std::vector<Supported>
+        supported_;  ///< nodes with depth of what is still to come in; the flow's own mass there [kg]
     struct NodePeaks {
         Index k;
         double depth, arrival, speed, pressure, dynamic_pressure;

@@ -119,7 +119,7 @@ Sample DepthAveraged::at(const Vec2& point) const {
             const Index k = flow_.grid.at(i + di, j + dj);
             sample.elevation += w * flow_.bed.z[k];
             if (!flow_.is_in_reach(i + di, j + dj)) continue;
-            sample.depth += w * flow_.nodes.depth[k];
+            sample.depth += w * own_depth(k);
             sample.velocity += w * Vec2(flow_.nodes.before[k].x, flow_.nodes.before[k].y);
         }
     const BedHere bed = bed_at(flow_, steep_, curved_, u, v);
@@ -137,7 +137,7 @@ double DepthAveraged::fastest_node() const {
     const Motion* motions = flow_.nodes.motions();
     double fastest = 0.0;
     for_each_output_node(flow_, shown_, [&](Index k, Index) {
-        const double h = flow_.nodes.depth[k];
+        const double h = own_depth(k);
         if (h <= 0.0) return;
         const BedContact contact = bed_contact(flow_, steep_, curved_, k, motions[k].vx, motions[k].vy);
         fastest = std::max(fastest, speed_that_counts(h, footprint_depth_, contact.speed));
@@ -231,7 +231,7 @@ double DepthAveraged::node_fields(Frame& frame) {
     const Motion* motions = flow_.nodes.motions();
     double fastest = 0.0;
     for_each_output_node(flow_, shown_, [&](Index k, Index n) {
-        const double h = flow_.nodes.depth[k], vx = motions[k].vx, vy = motions[k].vy;
+        const double h = own_depth(k), vx = motions[k].vx, vy = motions[k].vy;
         if (h <= 0.0) return;
         const double bx = steep_ ? flow_.bed.slope_x[k] : 0.0, by = steep_ ? flow_.bed.slope_y[k] : 0.0;
         const BedContact contact = bed_contact(flow_, steep_, curved_, k, vx, vy);
@@ -243,7 +243,7 @@ double DepthAveraged::node_fields(Frame& frame) {
         if (steep_) velocity[3 * n + 2] = vx * flow_.bed.smooth[k].x + vy * flow_.bed.smooth[k].y;
         speed[n] = contact.speed;
         fastest = std::max(fastest, speed_that_counts(h, footprint_depth_, contact.speed));
-        pressure[n] = contact.pressure;
+        pressure[n] = contact.pressure * (h / flow_.nodes.depth[k]);
     });
     return fastest;
 }
@@ -267,7 +267,7 @@ void DepthAveraged::stress_fields(Frame& frame) {
         const StressSum& sum = stress_sums_[k];
         for (int n = 0; n < 3; ++n) {
             if (sum.mass > 0.0) at_nodes[3 * to + n] = sum.stress[n] / sum.mass;
-            effective_nodes[3 * to + n] = at_nodes[3 * to + n] - (n < 2 ? half_weight * flow_.nodes.depth[k] : 0.0);
+            effective_nodes[3 * to + n] = at_nodes[3 * to + n] - (n < 2 ? half_weight * own_depth(k) : 0.0);
         }
     });
 }

@@ -35,6 +35,18 @@ void spread(Flow& flow, const ColumnAt& column, const Edges& edges) {
     }
 }
 
+/// The node, and those that walls fold it onto.
+template <class Body>
+void for_each_image(const Flow& flow, Index i, Index j, Body&& body) {
+    const auto image = [](Index n, Index count) { return n < 0 ? -n : n >= count ? 2 * (count - 1) - n : n; };
+    body(flow.grid.at(i, j));
+    if (!flow.walls) return;
+    const Index a = image(i, flow.grid.nx()), b = image(j, flow.grid.ny());
+    if (a != i) body(flow.grid.at(a, j));
+    if (b != j) body(flow.grid.at(i, b));
+    if (a != i && b != j) body(flow.grid.at(a, b));
+}
+
 /// [J]
 double potential(const Flow& flow, Index k, double mass) {
     return flow.gravity * mass * (flow.bed.z[k] + 0.5 * mass / (flow.density * flow.area));
@@ -66,7 +78,7 @@ void DepthAveraged::support_inflows() {
         for_each_touched(column.x, column.y, half, [&](Index i, Index j) {
             const Index k = flow_.grid.at(i, j);
             flow_.in_reach[tile_of_node(flow_.grid, i, j)] |= group_of((i + kTile) % kTile, (j + kTile) % kTile);
-            supported_.push_back({k, flow_.nodes.column_mass[k]});
+            for_each_image(flow_, i, j, [&](Index n) { supported_.push_back({n, flow_.nodes.column_mass[n]}); });
         });
     });
     if (supported_.empty()) return;
@@ -78,15 +90,71 @@ void DepthAveraged::support_inflows() {
     activate_all(flow_);
 }
 
-/// Whether less than half of what lies there is the flow's own.
-bool DepthAveraged::is_support(const Supported& node) const {
-    return node.before < 0.5 * flow_.nodes.column_mass[node.k];
+/// What holds an inflow up is folded too: what is left of a node's mass without it is the flow's own.
+void DepthAveraged::fold_with_support() {
+    if (!flow_.walls || supported_.empty()) return fold_walls(flow_);
+    for (Supported& node : supported_) node.own = flow_.nodes.column_mass[node.k] - node.own;  // now what is not
+    for (int axis = 0; axis < 2; ++axis)
+        for_each_wall_pair(flow_, axis, 0, [&](Index ghost, Index mirror) {
+            const Supported* const from = supported(ghost);
+            Supported* const to = supported(mirror);
+            if (from && to) to->own += from->own;
+        });
+    fold_walls(flow_);
+    for (Supported& node : supported_) node.own = std::max(0.0, flow_.nodes.column_mass[node.k] - node.own);
 }
 
-bool DepthAveraged::is_support(Index k) const {
+DepthAveraged::Supported* DepthAveraged::supported(Index k) {
     const auto found = std::lower_bound(supported_.begin(), supported_.end(), k,
                                         [](const Supported& a, Index wanted) { return a.k < wanted; });
-    return found != supported_.end() && found->k == k && is_support(*found);
+    return found != supported_.end() && found->k == k ? &*found : nullptr;
+}
+
+/// Depth of the flow itself at a node [m].
+double DepthAveraged::own_depth(Index k) const {
+    const Supported* const node = supported(k);
+    if (!node) return flow_.nodes.depth[k];
+    const double own = node->own / (flow_.density * flow_.area);
+    return own > flow_.dry_depth() ? own : 0.0;
+}
+
+/// Whether less than half of what lies there is the flow's own.
+bool DepthAveraged::is_support(const Supported& node) const { return node.own < 0.5 * flow_.nodes.column_mass[node.k]; }
+
+bool DepthAveraged::is_support(Index k) const {
+    const Supported* const node = supported(k);
+    return node && is_support(*node);
+}
+
+/// Sums over nodes, anew for the tiles that have some.
+void DepthAveraged::leave_support_out(NodeSums& sums) {
+    sums.potential -= potential_of_support();
+    std::vector<Index> tiles;
+    const Index stride = flow_.grid.stride();
+    for (const Supported& node : supported_)
+        tiles.push_back(flow_.grid.tile_of_node(node.k % stride - kTile, node.k / stride - kTile));
+    std::sort(tiles.begin(), tiles.end());
+    tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+    for (const Index tile : tiles) {
+        double deepest = 0.0, covered = 0.0, far2 = 0.0;
+        for_each_node_of(flow_.grid, tile, flow_.in_reach[tile], [&](Index k, Index i, Index j) {
+            const double h = own_depth(k), share = flow_.share(i, j);
+            if (!(share > 0.0)) return;
+            deepest = std::max(deepest, h);
+            if (!(h > footprint_depth_)) return;
+            covered += share * flow_.area;
+            const Vec2 from = Vec2(static_cast<double>(i), static_cast<double>(j)) - centre_;
+            far2 = std::max(far2, from.squaredNorm() * flow_.area);
+        });
+        flow_.depth_sums[tile] = {flow_.depth_sums[tile][0], deepest, covered, far2};
+    }
+    sums.max_depth = sums.covered_area = sums.front2 = 0.0;
+    for (const Index tile : flow_.active.work) {
+        const TileSums& part = flow_.depth_sums[tile];
+        sums.max_depth = std::max(sums.max_depth, part[1]);
+        sums.covered_area += part[2];
+        sums.front2 = std::max(sums.front2, part[3]);
+    }
 }
 
 void DepthAveraged::put_peaks_aside() {
@@ -101,14 +169,22 @@ void DepthAveraged::put_peaks_back() {
     for (const NodePeaks& had : peaks_aside_) {
         peaks_.depth[had.k] = had.depth, peaks_.arrival[had.k] = had.arrival, peaks_.speed[had.k] = had.speed;
         peaks_.pressure[had.k] = had.pressure, peaks_.dynamic_pressure[had.k] = had.dynamic_pressure;
+        const double own = own_depth(had.k);  // frames show it, and none may show more than the peak
+        if (own > footprint_depth_ && !(had.depth > footprint_depth_)) peaks_.arrival[had.k] = status_.time;
+        peaks_.depth[had.k] = std::max(had.depth, own);
     }
 }
 
 /// It is not of the flow.
 double DepthAveraged::potential_of_support() const {
     double sum = 0.0;
+    const Index stride = flow_.grid.stride();
+    const auto share = [&](const Supported& node) {
+        return flow_.share(node.k % stride - kTile, node.k / stride - kTile);
+    };
     for (const Supported& node : supported_)
-        sum += potential(flow_, node.k, flow_.nodes.column_mass[node.k]) - potential(flow_, node.k, node.before);
+        sum += share(node) *
+               (potential(flow_, node.k, flow_.nodes.column_mass[node.k]) - potential(flow_, node.k, node.own));
     return sum;
 }
 

@@ -60,7 +60,7 @@ void DepthAveraged::serialize(Archive& archive) {
     serialize_peaks(archive);
     if (erosion_) erosion_->serialize(archive, flow_, tiles_of_a_step());
     timed_.serialize(archive);
-    if (feed_) feed_->serialize(archive), choose_sleep();
+    if (feed_) feed_->serialize(archive), serialize_support(archive), choose_sleep();
     if (late_) late_->serialize(archive);
     if (passages_) archive.array("passed", passages_->passed());
     if (!archive.loading()) return;
@@ -121,6 +121,19 @@ void DepthAveraged::serialize_nodes(Archive& archive) {
     serialize_tiles(archive, "column_mass", flow_, tiles, 1, [&](Index k) { return &nodes.column_mass[k]; });
     if (nodes.forced)
         serialize_tiles(archive, "force", flow_, tiles, 2, [&](Index k) { return &nodes.deposits()[k].fx; });
+}
+
+void DepthAveraged::serialize_support(Archive& archive) {
+    const Archive::Part part(archive, "support");
+    std::vector<Index> nodes;
+    std::vector<double> own;
+    for (const Supported& node : supported_) nodes.push_back(node.k), own.push_back(node.own);
+    archive.array("node", nodes);
+    archive.array("own", own);
+    if (!archive.loading()) return;
+    if (nodes.size() != own.size()) throw misfit("its columns differ in length");
+    supported_.clear();
+    for (std::size_t n = 0; n < nodes.size(); ++n) supported_.push_back({nodes[n], own[n]});
 }
 
 /// Those whose nodes a step may change: of the work list, and where what is still to come may enter.

@@ -130,7 +130,7 @@ class Result:
     warnings : list of str
         Remarks on what may not be what was meant.
     reason : str
-        "end", "rest", "left", "interrupted", "numerics" or "refused".
+        "end", "until", "rest", "left", "interrupted", "numerics" or "refused".
     folder : str or None
         Where its files are.
     """

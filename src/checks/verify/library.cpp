@@ -1,5 +1,7 @@
 #include "checks/verify/library.h"
 
+#include <algorithm>
+
 namespace frana::verify {
 
 const std::vector<Problem>& library() {
@@ -18,6 +20,37 @@ const std::vector<Problem>& library() {
         return problems;
     }();
     return all;
+}
+
+const std::vector<Alias>& aliases() {
+    static const std::vector<Alias> all = {
+        {"energy_line", {"energy_parabola", "energy_hockey", "energy_avaframe"}, "energy lines on three tracks"},
+        {"dam_obstacle",
+         {"dam_front", "reflected_bore"},
+         "points in space: the front of a dam break, and the force of a stream on a wall that it strikes"},
+        {"jaumann_shear",
+         {"structured_spin"},
+         "stress that turns with the material; simple shear itself is a test of the law (V3)"},
+        {"unconfined_compression",
+         {"structured_stand"},
+         "a block that stands without confinement; its strength itself is a test of the law (V7)"}};
+    return all;
+}
+
+std::vector<std::string> without_aliases(const std::vector<std::string>& names) {
+    std::vector<std::string> plain;
+    const auto add = [&](const std::string& name) {
+        if (std::find(plain.begin(), plain.end(), name) == plain.end()) plain.push_back(name);
+    };
+    for (const std::string& name : names) {
+        const auto alias =
+            std::find_if(aliases().begin(), aliases().end(), [&](const Alias& one) { return one.name == name; });
+        if (alias == aliases().end())
+            add(name);
+        else
+            for (const std::string& problem : alias->problems) add(problem);
+    }
+    return plain;
 }
 
 const Problem* find_problem(const std::string& name) {

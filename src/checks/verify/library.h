@@ -1,5 +1,8 @@
 #pragma once
 // The canon: every verification problem that frana knows.
+#include <string>
+#include <vector>
+
 #include "checks/verify/problem.h"
 
 namespace frana::verify {
@@ -8,6 +11,16 @@ namespace frana::verify {
 const std::vector<Problem>& library();
 /// The problem of that name, or nullptr.
 const Problem* find_problem(const std::string& name);
+
+/// A name that selects other problems.
+struct Alias {
+    std::string name;
+    std::vector<std::string> problems;
+    std::string title;  ///< one line: what these have of it
+};
+const std::vector<Alias>& aliases();
+/// The names, aliases among them as the problems that they select; each problem once.
+std::vector<std::string> without_aliases(const std::vector<std::string>& names);
 
 // The rooms of the library, one file each.
 std::vector<Problem> dam_break_problems();        // problems_dam_break.cpp

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "run/ensemble/kept_rows.h"
 #include "run/ensemble/run_pool.h"
+#include "run/folder/run_folder.h"
 #include "run/folder/run_lock.h"
 
 namespace frana {
@@ -26,6 +27,13 @@ void write_once(const fs::path& file, const std::string& text) {
 }
 
 }  // namespace
+
+void require_room_for_ensemble(const fs::path& dir) {
+    require_no_others(dir, kOrigin,
+                      {"samples.csv", "runs.csv", "report.md", "run.json", "ensemble.json", "maps.vti", "terrain.vti",
+                       "rasters", "figures", "states"},
+                      "an ensemble");
+}
 
 fs::path origin_of_ensemble(const fs::path& dir) {
     std::ifstream stream(dir / kOrigin);
@@ -46,6 +54,7 @@ EnsembleRun::EnsembleRun(EnsemblePlan plan, fs::path dir)
       base_(ensemble_base(plan_, reader_, meshes_)) {}
 
 std::vector<Index> EnsembleRun::left_to_run(const Shard& shard, bool resume) const {
+    require_room_for_ensemble(dir_);
     const fs::path rows = shard_folder(dir_, shard) / "runs.csv";
     if (fs::exists(rows) && !resume)
         throw UserError(
@@ -84,6 +93,7 @@ std::optional<SampleResult> EnsembleRun::try_out(Index sample, const Interrupt& 
 }
 
 EnsembleSummary EnsembleRun::join(std::optional<double> wall_seconds) const {
+    require_room_for_ensemble(dir_);
     const RunLock lock(dir_);
     for (const char* folder : {"", "rasters", "figures"}) remove_leftovers(dir_ / folder);
     write_once(dir_ / "samples.csv", samples_table(plan_));

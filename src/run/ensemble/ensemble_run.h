@@ -14,6 +14,9 @@
 
 namespace frana {
 
+/// Refuses a folder in which files lie that an ensemble writes and no ensemble has left there. Throws UserError.
+void require_room_for_ensemble(const std::filesystem::path& dir);
+
 /// The file of the ensemble whose runs are in a folder. Throws UserError where it is none.
 std::filesystem::path origin_of_ensemble(const std::filesystem::path& dir);
 
@@ -29,7 +32,7 @@ public:
     const std::filesystem::path& folder() const { return dir_; }
 
     /// Those of the shard that no shard in the folder has run; what was refused is tried again. Throws UserError where the
-    /// shard has run before, unless it is to go on.
+    /// shard has run before, unless it is to go on, and where an ensemble has no room.
     std::vector<Index> left_to_run(const Shard& shard, bool resume) const;
 
     /// Runs these samples of a shard on so many threads (0: as OMP_NUM_THREADS or the machine says), and keeps what they tell in

@@ -65,6 +65,13 @@ UserError broken_row(const fs::path& file, const std::string& line) {
         file.string(), line));
 }
 
+void require_rows_of(const fs::path& file, const RowsOf& of) {
+    std::ifstream stream(file);
+    std::string line;
+    std::getline(stream, line);
+    require_same(file, line, of);
+}
+
 void for_each_row(const fs::path& file, const RowsOf& of, const std::function<void(const std::string& line)>& body) {
     std::ifstream stream(file);
     std::string line;

@@ -237,7 +237,7 @@ EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const 
     summary.wall_seconds = wall_seconds;
     for (const SampleResult& result : results) {
         summary.failed += !result.ended();
-        summary.not_at_rest += base.stops_at_rest && result.reason == "end";
+        summary.not_at_rest += result.still_moves;
         constexpr double noticeable = 1e-3;  // of the mass
         summary.left_terrain += result.ended() && result.left_share > noticeable;
         summary.core_seconds += result.seconds;

@@ -25,8 +25,8 @@ constexpr std::chrono::seconds kPatience{10};  ///< and when they are slow
 constexpr const char* kColumns =
     "sample,reason,time_s,steps,seconds,volume_m3,runout_m,reach_m,footprint_area_m2,max_depth_m,max_speed_m_s,left_"
     "share,"
-    "mass_error,iou,boundary_m,peaks,message";
-constexpr std::size_t kColumnCount = 17;
+    "mass_error,iou,boundary_m,still_moves,peaks,message";
+constexpr std::size_t kColumnCount = 18;
 constexpr std::size_t kGaugeColumns = 3;  ///< of each gauge, behind those
 
 std::string columns_of(const std::vector<Gauge>& gauges) {
@@ -37,10 +37,10 @@ std::string columns_of(const std::vector<Gauge>& gauges) {
 
 /// Of what was refused before its first step there are no gauges: their fields are empty too.
 std::string row_of(const SampleResult& r, const std::string& peaks, std::size_t gauges) {
-    std::string row =
-        fmt::format("{},{},{},{},{:.3f},{},{},{},{},{},{},{},{},{},{},{},{}", r.sample, r.reason, r.time, r.steps,
-                    r.seconds, r.volume, r.runout, r.reach, r.footprint_area, r.max_depth, r.max_speed, r.left_share,
-                    r.mass_error, text_of_known(r.iou), text_of_known(r.boundary), peaks, plain_field(r.message));
+    std::string row = fmt::format("{},{},{},{},{:.3f},{},{},{},{},{},{},{},{},{},{},{:d},{},{}", r.sample, r.reason,
+                                  r.time, r.steps, r.seconds, r.volume, r.runout, r.reach, r.footprint_area,
+                                  r.max_depth, r.max_speed, r.left_share, r.mass_error, text_of_known(r.iou),
+                                  text_of_known(r.boundary), r.still_moves, peaks, plain_field(r.message));
     for (std::size_t k = 0; k < gauges; ++k) {
         const GaugePeak peak = k < r.gauges.size() ? r.gauges[k] : GaugePeak();
         row +=
@@ -63,13 +63,13 @@ std::pair<SampleResult, std::string> result_of(const fs::path& file, const std::
             return f[k].empty() ? std::nullopt : std::optional<double>(kept_number(f[k]));
         };
         r.iou = known(13), r.boundary = known(14);
-        r.message = f[16];
+        r.still_moves = kept_number(f[15]) != 0.0, r.message = f[17];
         for (std::size_t k = kColumnCount; k < f.size(); k += kGaugeColumns)
             r.gauges.push_back({known(k), known(k + 1), known(k + 2)});
     } catch (const std::logic_error&) {  // what the conversions say of text that is no number
         throw broken_row(file, line);
     }
-    return {r, f[15]};
+    return {r, f[16]};
 }
 
 RowsOf rows_of(const EnsemblePlan& plan, const EnsembleBase& base) {
@@ -139,6 +139,12 @@ std::string mark_of(const EnsemblePlan& plan) {
     return fmt::format("# frana {},seed {},samples {},keys {:016x},case {:016x}", FRANA_VERSION, plan.seed,
                        prolongs ? "any" : std::to_string(plan.samples), sum_of(decides),
                        sum_of(mark_of_inputs(CaseFile::read(plan.case_file))));
+}
+
+bool has_runs_of(const fs::path& dir, const EnsemblePlan& plan) {
+    const std::vector<fs::path> files = row_files(dir);
+    for (const fs::path& file : files) require_rows_of(file, {"ensemble", mark_of(plan), ""});
+    return !files.empty();
 }
 
 ShardStore::ShardStore(fs::path folder, const EnsemblePlan& plan, const EnsembleBase& base)

@@ -27,6 +27,9 @@ std::filesystem::path shard_folder(const std::filesystem::path& dir, const Shard
 /// What an ensemble's rows belong to: version, seed, and sums of what decides its runs.
 std::string mark_of(const EnsemblePlan& plan);
 
+/// Whether the folder has runs of an ensemble. Throws UserError where they are another's (what differs is said).
+bool has_runs_of(const std::filesystem::path& dir, const EnsemblePlan& plan);
+
 /// Keeps results as they come, from any thread, many at a time: their peaks in an HDF5 file, then their rows in runs.csv. A row
 /// is what counts: whatever kills the program, a run is kept whole or not at all.
 class ShardStore {

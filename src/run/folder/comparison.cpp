@@ -158,8 +158,9 @@ std::string bed_change_table(const Comparison& c) {
 }  // namespace
 
 Comparison compare_rasters(const std::vector<ProductRaster>& rasters, const Raster* bed, double limit,
-                           const Survey& survey) {
+                           const Survey& survey, const std::optional<Vec2>& start) {
     SimulatedRun run;
+    run.start = start;
     run.peak_depth = raster_named(rasters, "peak_depth");
     run.final_depth = raster_named(rasters, "final_depth");
     run.deposited_depth = raster_named(rasters, "deposited_depth");

@@ -1,6 +1,7 @@
 #pragma once
 // A comparison with a survey as files and for people.
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,9 +11,10 @@
 
 namespace frana {
 
-/// The run's rasters held against a survey that was read. `bed` is null when the terrain is not known.
+/// The run's rasters held against a survey that was read. `bed` is null when the terrain is not known; `start`:
+/// SimulatedRun's.
 Comparison compare_rasters(const std::vector<ProductRaster>& rasters, const Raster* bed, double limit,
-                           const Survey& survey);
+                           const Survey& survey, const std::optional<Vec2>& start = std::nullopt);
 
 /// Reads the files onto the grid of `like` (a raster of the run); any may be empty. Remarks go to `log`.
 /// UserError for a file that cannot be used.

@@ -35,7 +35,7 @@ std::string heading(const RunRecord& r) {
     std::string text = fmt::format("# {}\n\n", r.title);
     text += fmt::format("Case `{}`, frana {}, {} to {} UTC, {} thread{}. The run ended at t = {:.6g} s: {}.\n\n",
                         r.name, FRANA_VERSION, s.started, s.ended, r.threads, r.threads == 1 ? "" : "s", s.last.time,
-                        reason_text(s));
+                        reason_text(r));
     if (!r.command_line.empty()) text += fmt::format("The case file was overridden by `{}`.\n\n", r.command_line);
     return text;
 }
@@ -384,7 +384,7 @@ std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_d
         return is_there(products, path) ? (run_dir / path).string() : std::string("-");
     };
     std::string text;
-    text += fmt::format("{}: {} (t = {:.6g} s)\n", r.title, reason_text(s), s.last.time);
+    text += fmt::format("{}: {} (t = {:.6g} s)\n", r.title, reason_text(r), s.last.time);
     text +=
         fmt::format("  computed   {} steps, {} particles, {:.3g} M particle-steps/s, {} ({:.0f} % output)\n", s.steps,
                     s.last.particles, s.wall_seconds > 0.0 ? 1e-6 * s.particle_steps / s.wall_seconds : 0.0,

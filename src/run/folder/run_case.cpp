@@ -22,7 +22,11 @@ namespace {
 
 void shorten(Scene& scene, const std::optional<double>& until) {
     if (!until) return;
-    if (!(*until > 0.0 && *until <= scene.end))
+    if (!(*until > 0.0))  // NaN too: a program may ask for it
+        throw UserError(
+            fmt::format("--until: found {:.10g}; expected a time above 0 and at most time.end = {:.10g} s; give one",
+                        *until, scene.end));
+    if (*until > scene.end)
         throw UserError(
             fmt::format("--until: found {:.10g} s; expected a time above 0 and at most time.end = {:.10g} s; "
                         "--set time.end={:.10g} runs longer",

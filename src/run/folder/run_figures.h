@@ -24,7 +24,8 @@ struct FigureSource {
     std::vector<ProductRaster> rasters;  ///< peak_depth, peak_speed, final_depth are drawn
     double footprint_depth = 0.1;        ///< [m]
     std::optional<Polygons> survey;
-    Polyline runout_path;  ///< drawn in the overlay with the survey; empty: none
+    std::optional<Vec2> start;  ///< where material came in, where nothing lay at the start [m]
+    Polyline runout_path;       ///< drawn in the overlay with the survey; empty: none
     std::vector<Profile> profiles;
     std::vector<Gauge> gauges;
     std::vector<Section> sections;

@@ -12,6 +12,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/layer_name.h"
 #include "scene/parameters.h"
 
 namespace frana {
@@ -326,6 +327,35 @@ void require_room_for_run(const fs::path& run_dir, const std::vector<fs::path>& 
                             "folder without files of such names; choose another one with --out, or move it "
                             "away",
                             file.string()));
+}
+
+void require_no_others(const fs::path& dir, const std::string& mark, const std::vector<std::string>& names,
+                       const std::string& what) {
+    if (fs::exists(dir / mark)) return;
+    std::vector<fs::path> found;
+    std::error_code none;
+    for (const std::string& name : names) {
+        if (fs::is_directory(dir / name)) {
+            for (const auto& entry : fs::recursive_directory_iterator(dir / name, none))
+                if (!entry.is_directory(none)) found.push_back(entry.path());
+        } else if (fs::exists(dir / name, none)) {
+            found.push_back(dir / name);
+        }
+    }
+    std::sort(found.begin(), found.end());
+    if (!found.empty())
+        throw UserError(
+            fmt::format("{}: found {}, which {} would replace; expected a folder without files of such names; choose "
+                        "another one with --out, or move them away",
+                        dir.string(), names_of(dir, found), what));
+}
+
+void require_no_input(const std::string& option, const fs::path& out, const std::vector<fs::path>& inputs) {
+    for (const fs::path& input : inputs)
+        if (same_file(out, split_layer(input.string()).file))
+            throw UserError(
+                fmt::format("{} {}: found a file that this command reads; expected another name; choose one", option,
+                            out.string()));
 }
 
 void prepare_run_folder(const fs::path& run_dir, const std::vector<fs::path>& inputs, Overwrite overwrite) {

@@ -44,6 +44,15 @@ enum class Overwrite { no, yes };
 void require_room_for_run(const std::filesystem::path& run_dir, const std::vector<std::filesystem::path>& inputs,
                           Overwrite overwrite);
 
+/// Refuses a folder that `what` ("an ensemble") has not begun to work in, as its own file `mark` would show, and in which
+/// files of these names lie, or files in folders of these names: it would replace them. Throws UserError.
+void require_no_others(const std::filesystem::path& dir, const std::string& mark, const std::vector<std::string>& names,
+                       const std::string& what);
+
+/// Refuses to write over a file that is read: `option` names the file to write. Inputs may name a layer. Throws UserError.
+void require_no_input(const std::string& option, const std::filesystem::path& out,
+                      const std::vector<std::filesystem::path>& inputs);
+
 /// Creates the folder and removes the files of an earlier run, which are those that its run.json lists. Everything
 /// else stays. Throws UserError as above, and when the folder is a file, cannot be made or cannot be written to.
 void prepare_run_folder(const std::filesystem::path& run_dir, const std::vector<std::filesystem::path>& inputs = {},

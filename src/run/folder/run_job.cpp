@@ -102,7 +102,7 @@ void compare_with_survey(const Scene& scene, const Raster& bed, const fs::path& 
         others.footprint.clear();  // was read with the scene
         Survey survey = read_survey_files(others, peak, record.warnings);
         survey.footprint = *scene.survey;
-        Comparison comparison = compare_rasters(rasters, &bed, scene.output.footprint_depth, survey);
+        Comparison comparison = compare_rasters(rasters, &bed, scene.output.footprint_depth, survey, record.start);
         write_scores(run_dir, run_dir / "compare.json", comparison);
         if (scene.output.vtk) write_survey(run_dir, bed, peak, comparison.limit, rings_of(survey.footprint));
         record.comparison = std::move(comparison);

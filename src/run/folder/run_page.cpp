@@ -44,6 +44,7 @@ std::string end_of(const PlainJson& record) {
     const std::string reason = record.value("exit_reason", "");
     if (reason == "rest") return "the mass came to rest";
     if (reason == "end") return "the simulated time was over";
+    if (reason == "until") return "it was to go on until then (--until)";
     if (reason == "left") return "no material was left";
     return reason;
 }

@@ -10,6 +10,7 @@
 #include "base/version.h"
 #include "run/folder/run_page.h"
 #include "scene/case_file.h"
+#include "scene/flow_start.h"
 
 namespace frana {
 namespace {
@@ -133,6 +134,7 @@ Json results_json(const RunRecord& record) {
             {"footprint_area", record.footprint_area},
             {"footprint_depth", record.footprint_depth},
             {"flow_width", std::isfinite(record.flow_width) ? Json(record.flow_width) : Json(nullptr)},
+            {"start", record.start ? Json{record.start->x(), record.start->y()} : Json(nullptr)},
             {"final_max_depth", record.final_depth},
             {"peak_pressure", record.peak_pressure},
             {"peak_dynamic_pressure", record.peak_dynamic_pressure}};
@@ -165,6 +167,7 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     record.end = record.whole_end = scene.end;
     if (file.given("time.end")) record.whole_end = file.number("time.end");
     record.footprint_depth = scene.output.footprint_depth;
+    record.start = start_of_what_comes_in(scene);
     record.page = asks_for_page(file);
     record.warnings = scene.log;
     return record;
@@ -178,11 +181,15 @@ std::string motion_text(const RunSummary& s) {
 
 /// Whether a rule, or the end of the time, stopped what was still in motion.
 bool stopped_in_motion(const RunSummary& s) {
-    return (s.reason == "end" || s.reason == "rest") && s.motion.fastest > 0.0;
+    return (s.reason == "end" || s.reason == "until" || s.reason == "rest") && s.motion.fastest > 0.0;
 }
 
-std::string reason_text(const RunSummary& summary) {
+std::string reason_text(const RunRecord& record) {
+    const RunSummary& summary = record.summary;
     const bool moves = stopped_in_motion(summary);
+    if (summary.reason == "until")
+        return fmt::format("stopped by --until at {:.6g} of {:.6g} s; --resume goes on: {}", record.end,
+                           record.whole_end, moves ? motion_text(summary) : "nothing moves any more");
     if (summary.reason == "end")
         return moves ? "stopped by the rule time.end, the simulated time is over: " + motion_text(summary)
                      : "the simulated time is over, and nothing moves any more";
@@ -199,7 +206,7 @@ std::string reason_text(const RunSummary& summary) {
 
 /// Why the run ended, and what was in motion then.
 Json rest_json(const RunSummary& s) {
-    const bool by_rule = s.reason == "end" || s.reason == "rest";
+    const bool by_rule = s.reason == "end" || s.reason == "until" || s.reason == "rest";
     return {{"reason", !by_rule               ? s.reason
                        : stopped_in_motion(s) ? "stopped by the rule"
                                               : "at rest"},

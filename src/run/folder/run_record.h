@@ -52,6 +52,7 @@ struct RunRecord {
     double peak_depth = 0.0, peak_speed = 0.0, peak_pressure = 0.0;  ///< of the rasters [m], [m/s], [Pa]
     double peak_dynamic_pressure = 0.0;                              ///< [Pa]
     double final_depth = 0.0;                                        ///< deepest at the end [m]
+    std::optional<Vec2> start;           ///< of the path of runouts, where nothing lay at the start
     double flow_width = Raster::nodata;  ///< median over the footprint's length, compare/flow_width.h [m]
     int threads = 1;
     std::optional<Comparison> comparison;  ///< with the survey, when the case gives one
@@ -75,7 +76,7 @@ struct RunRecord {
 RunRecord begin_record(const Scene& scene, const CaseFile& file);
 
 /// "the end of the simulated time", "interrupted", ... for people.
-std::string reason_text(const RunSummary& summary);
+std::string reason_text(const RunRecord& record);
 
 /// run.json as text: contract in the README; numbers in SI, with all their digits.
 std::string run_json(const RunRecord& record);

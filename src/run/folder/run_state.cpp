@@ -16,9 +16,7 @@
 
 namespace frana {
 namespace fs = std::filesystem;
-namespace {
 
-/// Position of the frame nearest to `time`.
 Index choose_frame(const std::vector<double>& times, double time, const fs::path& frames) {
     if (times.empty())
         throw UserError(fmt::format("{}: lists no frame yet; expected the frames of a run; wait for its first output",
@@ -38,6 +36,8 @@ Index choose_frame(const std::vector<double>& times, double time, const fs::path
         if (std::abs(times[k] - time) < std::abs(times[nearest] - time)) nearest = k;
     return static_cast<Index>(nearest);
 }
+
+namespace {
 
 /// Component c of a column.
 template <class Loaded>

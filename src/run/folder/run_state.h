@@ -2,6 +2,7 @@
 // A depth-averaged state read back from the frames of a run, finished or still going on.
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "convert/flow_columns.h"
 
@@ -13,6 +14,10 @@ struct RunState {
     Raster bed;           ///< with the run's coordinate system as far as it is known
     std::string frames;   ///< the file that lists the frames
 };
+
+/// Position of the frame nearest to `time` [s]. Throws UserError, which names --time and the file that lists the frames,
+/// where there are none, and before the first or past the last of them.
+Index choose_frame(const std::vector<double>& times, double time, const std::filesystem::path& frames);
 
 /// The frame nearest to `time` [s], of particles.pvd or, in runs without VTK files, of run.h5. The bed under a particle
 /// is the run's own (free surface minus depth); slopes are those of the terrain that the run wrote, along

@@ -1,0 +1,38 @@
+#include "scene/flow_start.h"
+
+#include <algorithm>
+
+namespace frana {
+namespace {
+
+Vec2 middle_of(const Inflow& inflow) {
+    if (inflow.patches.empty()) return inflow.middle();
+    Vec2 middle(0, 0);
+    for (const Inflow::Patch& patch : inflow.patches) middle += patch.share * patch.at;
+    const auto nearer = [&](const Inflow::Patch& a, const Inflow::Patch& b) {
+        return (a.at - middle).squaredNorm() < (b.at - middle).squaredNorm();
+    };
+    return std::min_element(inflow.patches.begin(), inflow.patches.end(), nearer)->at;
+}
+
+}  // namespace
+
+std::optional<Vec2> flow_start(const Scene& scene) {
+    Seeds all;
+    for (const Seeds* seeds : scene.all_particles()) all.append(*seeds, 0, seeds->count());
+    if (all.count() == 0)
+        return scene.inflows.empty() ? std::nullopt : std::optional<Vec2>(middle_of(scene.inflows.front()));
+    const auto place = [&](std::size_t k) { return Vec2(all.x[k], all.y[k]); };
+    Vec2 middle(0, 0);
+    for (std::size_t k = 0; k < all.x.size(); ++k) middle += place(k) / static_cast<double>(all.count());
+    std::size_t nearest = 0;
+    for (std::size_t k = 1; k < all.x.size(); ++k)
+        if ((place(k) - middle).squaredNorm() < (place(nearest) - middle).squaredNorm()) nearest = k;
+    return place(nearest);
+}
+
+std::optional<Vec2> start_of_what_comes_in(const Scene& scene) {
+    return scene.particles.count() > 0 ? std::nullopt : flow_start(scene);
+}
+
+}  // namespace frana
