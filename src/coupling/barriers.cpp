@@ -591,10 +591,10 @@ void BarrierWatch::sample(const Mpm3d& flow) {
             if (place == over) continue;
             const double top = top_of(solid, x.head<2>()), volume = flow.body().points.mass[p] / density_;
             if (!std::isfinite(top) || x.z() < top - cell) {  // beside it, or below what it spans
-                place = beside;
+                place = below;
                 continue;
             }
-            (place == beside ? load.overtopped : placed_) += volume;
+            (place == below ? load.overtopped : placed_) += volume;
             place = over;
         }
         load.reach(reached_.level());

@@ -164,7 +164,7 @@ public:
     void serialize(Archive& archive);
 
 private:
-    enum Place : std::uint8_t { unknown, beside, over };
+    enum Place : std::uint8_t { unknown, below, over };
     bool is_touched(std::size_t n, const Mpm3d& flow);
     std::uint8_t& place_of(std::size_t n, Index id);
     std::vector<int> surfaces_;                      ///< of each barrier
