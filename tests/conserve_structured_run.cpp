@@ -376,6 +376,18 @@ Scene wet_slide() {
 
 }  // namespace
 
+TEST_CASE("Gauges of structured columns know the bed, dry and beside water, where material is and where not",
+          "[structured][mixture]") {
+    const bool wet = GENERATE(false, true);
+    const StructuredRun run(wet ? wet_slide() : sliding(600.0));
+    for (const Vec2& place :
+         {Vec2(6.3, 7.2), Vec2(1.1, 2.6), Vec2(30.2, 3.3)}) {  // on the block, above it, on the flat
+        const Sample sample = run.at(place);
+        CHECK(sample.elevation == Approx(std::max(0.0, 5.0 - place.x() / 3.0)).margin(1e-12));
+        CHECK((sample.depth > 0.0) == (place.x() == 6.3 || (wet && place.x() == 30.2)));
+    }
+}
+
 TEST_CASE("No step before an output is a crumb, with structured columns and with water", "[structured][mixture]") {
     Scene scene = GENERATE(false, true) ? wet_slide() : sliding(600.0);
     if (!scene.water) scene.structure->share = 0.5;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "particles/bed_points.h"
+
 namespace frana {
 namespace {
 
@@ -133,6 +135,7 @@ MovingMass StructuredRun::motion(const MotionQuery& query) const {
 
 Sample StructuredRun::at(const Vec2& point) const {
     Sample sample;
+    sample.elevation = bed_below(bed_, point.x(), point.y());
     StructuredMap::sample(flow().body(), water(), point, sample.depth, sample.velocity);
     return sample;
 }
