@@ -228,6 +228,40 @@ TEST_CASE("Grains follow a bend of the bed as the depth-averaged flow does: what
     CHECK(ran(Curvature::full, true, 0.2).speed == Approx(ran(Curvature::full, false, 0.2).speed).epsilon(0.005));
 }
 
+TEST_CASE("Grains press on a bend of the bed as the depth-averaged flow does, and frames and peaks show it",
+          "[structured]") {
+    Scene scene = scene_on(161, 31, 0.5, [](double x, double) { return 0.02 * (x - 40.0) * (x - 40.0); });
+    scene.particles = {};
+    fill(scene, [](double x, double y) { return x > 9 && x < 12 && y > 5 && y < 10 ? 0.5 : 0.0; });
+    scene.bed_law = bed::Coulomb{0.0};
+    struct Shown {
+        double most, peaks, now;  // largest peak [Pa]; sums over the nodes [Pa]
+    };
+    const auto shown = [&](bool structured, bool wet) {
+        scene.structure.reset(), scene.water.reset();
+        if (structured)
+            scene.structure = solid_of(0.0), scene.structure->share = 0.0, scene.structure->hydrostatic = true;
+        if (wet) {  // water that bears nothing, and is hardly there
+            scene.water.emplace();
+            scene.water->share = 1e-9, scene.water->exchange.pore_pressure = 0.0;
+        }
+        const std::unique_ptr<Simulation> run = make_simulation(scene);
+        go_to(*run, 2.5);
+        const Frame frame = run->frame();
+        const Field *peak = frame.node("peak_pressure"), *now = frame.node("pressure");
+        Shown of{0.0, 0.0, 0.0};
+        for (Index n = 0; n < peak->count; ++n)
+            of.most = std::max(of.most, peak->data[n]), of.peaks += peak->data[n], of.now += now->data[n];
+        return of;
+    };
+    const bool wet = GENERATE(false, true);
+    const Shown columns = shown(false, false), grains = shown(true, wet);
+    CAPTURE(wet, columns.most, grains.most, columns.peaks, grains.peaks, columns.now, grains.now);
+    CHECK(grains.most == Approx(columns.most).epsilon(0.02));
+    CHECK(grains.peaks == Approx(columns.peaks).epsilon(0.02));
+    CHECK(grains.now == Approx(columns.now).epsilon(0.02));
+}
+
 TEST_CASE("Free water follows a bend of the bed: what it gains is what it falls", "[structured][mixture]") {
     Scene scene = scene_on(161, 41, 0.5, [](double x, double) { return 0.02 * (x - 40.0) * (x - 40.0); });
     scene.particles = {};

@@ -80,7 +80,7 @@ void StructuredRun::particle_fields(Frame& frame) {
         velocity[3 * p] = q.vx[p], velocity[3 * p + 1] = q.vy[p], velocity[3 * p + 2] = up;
         speed[p] = std::sqrt(q.vx[p] * q.vx[p] + q.vy[p] * q.vy[p] + up * up);
         elevation[p] = z, surface[p] = z + h;
-        pressure[p] = body.density * h * from_nodes(body, p, [&](Index k) { return body.ground[k].across; });
+        pressure[p] = body.density * h * from_nodes(body, p, [&](Index k) { return StructuredMap::pressing(body, k); });
         mass[p] = q.mass[p], volume[p] = q.volume[p], id[p] = static_cast<double>(q.id[p]);
         stress[3 * p] = holds * q.xx[p], stress[3 * p + 1] = holds * q.yy[p], stress[3 * p + 2] = holds * q.xy[p];
         const Sym2 k =
@@ -124,7 +124,7 @@ void StructuredRun::node_fields(Frame& frame) {
         thickness[n] = h / std::sqrt(1.0 + ground.slope_x * ground.slope_x + ground.slope_y * ground.slope_y);
         velocity[3 * n] = node.vx, velocity[3 * n + 1] = node.vy, velocity[3 * n + 2] = up;
         speed[n] = std::sqrt(node.vx * node.vx + node.vy * node.vy + up * up);
-        pressure[n] = body.density * ground.across * h;
+        pressure[n] = body.density * StructuredMap::pressing(body, k) * h;
     });
 }
 

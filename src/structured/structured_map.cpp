@@ -4,6 +4,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "structured/node_water.h"
+
 namespace frana {
 
 StructuredMap::StructuredMap(const TileGrid& grid, const Vec2& centre, double footprint_depth, LazyArray<Pair> path)
@@ -27,7 +29,8 @@ Standing columns_on(const StructuredBody& body, Index k) {
     const StructuredBody::Moved& node = body.moved[k];
     const double depth = StructuredMap::depth_of(body, k);
     if (!(depth > 0.0)) return {};
-    return {depth, body.density * body.ground[k].across * depth, body.density * depth, Vec2(node.vx, node.vy)};
+    return {depth, body.density * StructuredMap::pressing(body, k) * depth, body.density * depth,
+            Vec2(node.vx, node.vy)};
 }
 
 /// With the water: velocities are those of both masses together.
@@ -92,6 +95,12 @@ Index StructuredMap::fronts(const StructuredBody& body, const WaterFlow* water, 
             }
     }
     return count;
+}
+
+double StructuredMap::pressing(const StructuredBody& body, Index k) {
+    if (!(body.node_mass[k] > 0.0)) return body.ground[k].across;  // parts of columns around, without a velocity
+    const double borne = body.water ? meet_water(body, k).support : 0.0;
+    return body.moved[k].normal_gravity + borne * body.ground[k].across;
 }
 
 bool StructuredMap::is_in_reach(const StructuredBody& body, Index i, Index j) {

@@ -242,6 +242,13 @@ void share_out(StructuredBody& body) {
     });
 }
 
+/// The weight of a node's columns on the bed over that at rest, before share_out(): grains alone feel a bend.
+double weight_on_bend(const StructuredBody& body, Index k, double mass, const Vec2& v) {
+    if (!body.curved || !body.grains) return 1.0;
+    const SteepBed<double, Curvature::full, false> bed(body.flow, k);
+    return 1.0 + body.grain_pressure[k].share / mass * (bed.gravity(body.gravity, v.x(), v.y()) / body.gravity - 1.0);
+}
+
 }  // namespace
 
 void move_nodes(StructuredBody& body, const StepTimes& times) {
@@ -275,7 +282,8 @@ void sample_nodes(StructuredBody& body) {
                     body.water ? body.bound[k].volume / (ground.open * area) : dry_depth(body, k, mass, ground.open);
                 const Vec2 v = Vec2(node.px, node.py) / mass;
                 const double support = body.water ? meet_water(body, k).support : 0.0;
-                body.moved[k] = {v.x(), v.y(), (1.0 - support) * ground.across, depth};
+                const double weight = weight_on_bend(body, k, mass, v);
+                body.moved[k] = {v.x(), v.y(), (1.0 - support) * weight * ground.across, depth};
                 tally.kinetic += 0.5 * mass * along_ground(ground, v, v);
                 tally.potential += mass * body.gravity * (ground.elevation + 0.5 * depth);
             }
