@@ -422,6 +422,26 @@ TEST_CASE("Gauges of structured columns know the bed, dry and beside water, wher
     }
 }
 
+TEST_CASE("Velocities of grains and water together are by mass, in frames as in gauges", "[structured][mixture]") {
+    Scene scene = wet_slide();
+    scene.structure->share = 0.0, scene.structure->confined = 0.0;
+    StructuredRun run(scene);
+    go_to(run, 0.7);
+    const Frame frame = run.frame();
+    const double *depth = frame.node("depth")->data, *water = frame.node("water_depth")->data,
+                 *velocity = frame.node("velocity")->data, *own = frame.node("water_velocity")->data;
+    Index mixed = 0;
+    for (Index j = 0; j < 31; ++j)
+        for (Index i = 0; i < 81; ++i) {
+            const Index n = j * 81 + i;
+            const Vec2 at = run.at({0.5 * static_cast<double>(i), 0.5 * static_cast<double>(j)}).velocity;
+            CHECK(velocity[3 * n] == Approx(at.x()).margin(1e-12));
+            CHECK(velocity[3 * n + 1] == Approx(at.y()).margin(1e-12));
+            mixed += water[n] > 0.1 && depth[n] > water[n] + 0.1 && std::abs(velocity[3 * n] - own[3 * n]) > 0.1;
+        }
+    CHECK(mixed > 5);
+}
+
 TEST_CASE("No step before an output is a crumb, with structured columns and with water", "[structured][mixture]") {
     Scene scene = GENERATE(false, true) ? wet_slide() : sliding(600.0);
     if (!scene.water) scene.structure->share = 0.5;

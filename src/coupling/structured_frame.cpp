@@ -168,7 +168,7 @@ void StructuredRun::inner_fields(Frame& frame) {
     });
 }
 
-/// Depth, surface, velocity and pressure of nodes are those of both; the water's own are apart.
+/// Depth, surface and pressure of nodes are those of both, velocity that of both masses together; the water's own are apart.
 void StructuredRun::water_fields(Frame& frame) {
     const WaterBody& water = both_->water().body();
     const GridGeometry& g = bed_.geometry;
@@ -187,10 +187,11 @@ void StructuredRun::water_fields(Frame& frame) {
         const double bx = per * (water.bed[k + 1] - water.bed[k - 1]),
                      by = per * (water.bed[k + water.grid.stride()] - water.bed[k - water.grid.stride()]);
         const double u = h > water.film ? water.now.qx[k] / h : 0.0, v = h > water.film ? water.now.qy[k] / h : 0.0;
-        const double own[3] = {u, v, map_.climb(k, u, v)}, before = depth[n], all = before + h;
+        const double own[3] = {u, v, map_.climb(k, u, v)}, all = depth[n] + h,
+                     columns = flow().body().density * depth[n], both = columns + water_density_ * h;
         for (int c = 0; c < 3; ++c) {
             water_velocity[3 * n + c] = own[c];
-            velocity[3 * n + c] = (before * velocity[3 * n + c] + h * own[c]) / all;
+            velocity[3 * n + c] = (columns * velocity[3 * n + c] + water_density_ * h * own[c]) / both;
         }
         speed[n] = Vec3(velocity[3 * n], velocity[3 * n + 1], velocity[3 * n + 2]).norm();
         water_depth[n] = h, depth[n] = all, surface[n] += h;

@@ -116,14 +116,16 @@ void StructuredMap::sample(const StructuredBody& body, const WaterFlow* water, c
     const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
     const double fu = u - static_cast<double>(i), fv = v - static_cast<double>(j);
     depth = 0.0;
-    Vec2 flux(0, 0);
+    double inertia = 0.0;
+    Vec2 momentum(0, 0);
     for (Index dj = 0; dj < 2; ++dj)
         for (Index di = 0; di < 2; ++di) {
             const Standing node = on_node(body, water, i + di, j + dj);
-            const double w = (di ? fu : 1.0 - fu) * (dj ? fv : 1.0 - fv) * node.depth;
-            depth += w, flux += w * node.velocity;
+            const double w = (di ? fu : 1.0 - fu) * (dj ? fv : 1.0 - fv);
+            depth += w * node.depth;
+            inertia += w * node.inertia, momentum += w * node.inertia * node.velocity;
         }
-    velocity = depth > 0.0 ? Vec2(flux / depth) : Vec2(0, 0);
+    velocity = inertia > 0.0 ? Vec2(momentum / inertia) : Vec2(0, 0);
 }
 
 void StructuredMap::serialize(Archive& archive) {
