@@ -87,7 +87,7 @@ void StructuredRun::accumulate() {
     }
     status_.kinetic = s.bed_kinetic, status_.potential = s.potential;
     status_.stored = s.stored;
-    status_.dissipated = s.friction + s.obstacle_work + (s.worked - s.stored);
+    status_.dissipated = s.friction + s.squeezed + s.obstacle_work + (s.worked - s.stored);
     status_.energy_left = s.energy_left;
     status_.max_speed = map_.extent().max_speed, status_.max_speed_on_map = s.max_speed;
     status_.mean_speed = map_.extent().mean_speed();
