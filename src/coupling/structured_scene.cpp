@@ -243,6 +243,7 @@ TwoPhaseScene two_phase_scene(const Scene& scene) {
         return [&rate, node](double x, double y) { return rate.values[node(x, y)]; };
     };
     w.rain = on_nodes(of.rain), w.infiltration = on_nodes(of.infiltration);
+    w.level = of.level;
     w.sides.fill(scene.sides == Sides::wall ? WaterSide::wall : WaterSide::open);
     if (s.columns.curved) w.curvature = curvature_of(s.columns);
     w.friction = of.friction, w.viscosity = of.viscosity;
