@@ -512,7 +512,7 @@ TEST_CASE("A run with water keeps mass and momentum of both, and its water's vol
     while (run.status().time < scene.end) {
         run.advance(scene.end);
         const Status& now = run.status();
-        worst = std::max(worst, std::abs(now.mass + now.mass_left - first.mass - first.mass_left) / first.mass);
+        worst = std::max(worst, std::abs(now.mass + now.mass_left - now.mass_in - first.mass) / first.mass);
         for (const std::size_t axis : {0, 1})
             worst = std::max(worst, std::abs(now.momentum[axis] + now.momentum_left[axis] - first.momentum[axis] -
                                              (now.impulse[axis] - first.impulse[axis])) /
@@ -531,6 +531,39 @@ TEST_CASE("A run with water keeps mass and momentum of both, and its water's vol
     }
     CHECK(volume == Approx(run.water()->status().volume).epsilon(1e-12));
     require_finite(frame);
+}
+
+TEST_CASE("Rain has come in and what seeps away has left: none of both is negative", "[structured][mixture]") {
+    Scene scene = wet_slide();
+    scene.water->infiltration = Raster::filled(scene.bed.geometry, 1e-5);
+    StructuredRun run(scene);
+    const Status first = run.frame().status;
+    double lowest = 0.0;
+    while (run.status().time < scene.end) {
+        run.advance(scene.end);
+        lowest = std::min(lowest, run.status().mass_left);
+    }
+    const Status now = run.frame().status;
+    const WaterBudget water = run.water_budget().value();
+    CHECK(lowest == 0.0);
+    CHECK(water.infiltrated > 0.0);
+    CHECK(now.mass_in == Approx(1000.0 * (water.rained + water.entered)).epsilon(1e-14));
+    CHECK(now.mass_left == Approx(1000.0 * (water.left + water.infiltrated)).epsilon(1e-14));
+    CHECK(water.infiltrated_mass == Approx(1000.0 * water.infiltrated).epsilon(1e-14));
+    CHECK(std::abs(budget(first, now).mass_error) < 1e-13);
+}
+
+TEST_CASE("Progress tells the volume of solids and of water, each by its density", "[structured][mixture]") {
+    Scene scene = wet_slide();
+    scene.end = 0.05;
+    StructuredRun wet(scene);
+    Observers nobody;
+    std::ostringstream stream;
+    Progress progress(stream, Progress::Style::lines, scene.density);
+    run(wet, {scene.end, scene.end, false}, nobody, Interrupt(), progress);
+    const double volume = wet.flow().status().mass / scene.density + wet.water()->status().volume;
+    CAPTURE(stream.str());
+    CHECK(stream.str().find(fmt::format("particles  {:.4g} m3", volume)) != std::string::npos);
 }
 
 TEST_CASE("A lake over a heap of grains is level from the start", "[structured][mixture]") {
@@ -652,7 +685,7 @@ public:
     std::string name() const override { return "whole frames"; }
     void observe(const Frame& frame) override {
         times_.push_back(frame.status.time);
-        const double mass = frame.status.mass + frame.status.mass_left;
+        const double mass = frame.status.mass + frame.status.mass_left - frame.status.mass_in;
         if (times_.size() == 1) whole_ = mass;
         CHECK(mass == Approx(whole_).epsilon(1e-12));
     }

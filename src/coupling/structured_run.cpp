@@ -97,8 +97,8 @@ void StructuredRun::accumulate() {
     if (both_) accumulate_water();
 }
 
-/// The water's part. Rain and what the ground takes count as gone through the sides. Of its energy friction, viscosity and
-/// drag are recorded; what shocks and the scheme take is what is left, the residual.
+/// The water's part. Rain has come in, and what the ground takes has left. Of its energy friction, viscosity and drag are
+/// recorded; what shocks and the scheme take is what is left, the residual.
 void StructuredRun::accumulate_water() {
     const WaterStatus& w = both_->water().status();
     const WaterLedger& l = w.ledger;
@@ -107,7 +107,9 @@ void StructuredRun::accumulate_water() {
                thrust = w.momentum_given + l.ground + l.walls + l.friction + l.columns;
     status_.dt = w.dt;
     status_.mass = mass;
-    status_.mass_left += density * (l.left + l.infiltrated - l.rained);
+    status_.water = density * w.volume, status_.water_volume = w.volume;
+    status_.mass_left += density * (l.left + l.infiltrated);
+    status_.mass_in = density * (l.rained + l.entered);
     for (std::size_t axis = 0; axis < 2; ++axis) {
         const auto k = static_cast<Eigen::Index>(axis);
         status_.momentum[axis] += density * w.momentum[k];
@@ -118,7 +120,8 @@ void StructuredRun::accumulate_water() {
     status_.potential += density * both_->water_potential();
     status_.dissipated += density * (l.braked + l.sheared) + flow().status().dragged;
     const WaterBody& body = both_->water().body();
-    status_.energy_left += density * (l.energy_out + body.gravity * body.datum * (l.left + l.infiltrated - l.rained));
+    status_.energy_left +=
+        density * (l.energy_out + body.gravity * body.datum * (l.left + l.infiltrated - l.rained - l.entered));
     status_.max_speed_on_map = std::max(status_.max_speed_on_map, w.max_speed);
 }
 
@@ -164,6 +167,7 @@ std::optional<WaterBudget> StructuredRun::water_budget() const {
     b.given = both_->volume_given(), b.free = w.volume, b.confined = both_->confined();
     b.released = flow().status().released;
     b.rained = l.rained, b.infiltrated = l.infiltrated, b.left = l.left + flow().status().confined_left;
+    b.entered = l.entered, b.infiltrated_mass = water_density_ * l.infiltrated;
     b.solids_left = flow().status().mass_left - water_density_ * flow().status().confined_left;
     b.residual = both_->volume_residual();
     b.bed = water_density_ * l.braked, b.viscosity = water_density_ * l.sheared, b.drag = flow().status().dragged;

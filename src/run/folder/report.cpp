@@ -144,6 +144,9 @@ std::string budgets(const RunRecord& r) {
                         : came > 0.0             ? "all mass"
                                                  : "the initial mass");
     if (came > 0.0) text += fmt::format("| of it came in [kg] | 0 | {:.8g} | | |\n", came);
+    if (r.extras.water && r.extras.water->infiltrated_mass > 0.0)
+        text +=
+            fmt::format("| of what left, into the ground [kg] | | | {:.4g} | |\n", r.extras.water->infiltrated_mass);
     const double to_bed = s.last.bed.deposited - s.last.bed.eroded;
     if (to_bed != 0.0) text += fmt::format("| became bed, less what the bed gave [kg] | | {:.8g} | | |\n", to_bed);
     for (const std::size_t axis : {0, 1})
@@ -162,10 +165,11 @@ std::string budgets(const RunRecord& r) {
     if (r.extras.water) {
         const WaterBudget& w = *r.extras.water;
         text += fmt::format(
-            "Water [m3]: {:.8g} at the start and {:.4g} of rain; now {:.8g} free and {:.8g} in columns (these released "
+            "Water [m3]: {:.8g} at the start, {:.4g} of rain and {:.4g} from a lake beyond open sides; now {:.8g} free "
+            "and {:.8g} in columns (these released "
             "{:.4g}), "
             "{:.4g} infiltrated, {:.4g} left; residual {:.1e}.\n\n",
-            w.given, w.rained, w.free, w.confined, w.released, w.infiltrated, w.left, w.residual);
+            w.given, w.rained, w.entered, w.free, w.confined, w.released, w.infiltrated, w.left, w.residual);
     }
     const Status::In3d& points = s.last.in_3d;
     if (points.friction != 0.0 || points.walls != 0.0 || points.material != 0.0 || points.numerical != 0.0)
@@ -390,7 +394,10 @@ std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_d
                     s.last.particles, s.wall_seconds > 0.0 ? 1e-6 * s.particle_steps / s.wall_seconds : 0.0,
                     clock_text(s.wall_seconds), 100.0 * s.output_share());
     const double came = mass_came_in(s.first, s.last);
-    const std::string later = came > 0.0 ? fmt::format("; {:.6g} m3 came in later", came / r.density) : "";
+    const std::string later =
+        !(came > 0.0)    ? ""
+        : r.extras.water ? fmt::format("; {:.6g} m3 of water came in", r.extras.water->rained + r.extras.water->entered)
+                         : fmt::format("; {:.6g} m3 came in later", came / r.density);
     text += fmt::format("  released   {:.6g} m3{}; {} left the domain; mass error {:.1e}\n", r.release_volume, later,
                         left_text(r), budget(s.first, s.last).mass_error);
     text += fmt::format("  deepest    {:.4g} m, fastest {:.4g} m/s, front at {:.5g} m\n", s.extremes.max_depth,
