@@ -402,7 +402,30 @@ TEST_CASE("A barrier's box stops a structured block, which leaves it the momentu
     const Frame frame = run.frame();
     for (Index p = 0; p < frame.particles[0].count; ++p)
         CHECK(frame.particle("position")->data[3 * p] < 12.0 + 0.5 * scene.bed.geometry.cell);
-    CHECK(run.flow().status().impulse.obstacles.x() < -0.2 * run.status().mass);
+    const Vec2 got = run.flow().status().impulse.obstacles;
+    CHECK(got.x() < -0.2 * run.status().mass);
+    CHECK(run.breakage().pushed == std::array<double, 2>{-got.x(), -got.y()});
+}
+
+TEST_CASE("A barrier that structured columns stand higher than is named, since its box holds all back",
+          "[structured]") {
+    Scene scene = sliding();
+    Barrier wall;
+    wall.name = "wall";
+    wall.outline.parts = {{{{{12.0, -5.0}, {14.0, -5.0}, {14.0, 20.0}, {12.0, 20.0}}}}};
+    const auto said = [&](double height, std::optional<double> top) {
+        wall.height = height, wall.top = top;
+        scene.barriers = {wall};
+        StructuredRun run(scene);
+        go_to(run, scene.end);
+        std::string all;
+        for (const std::string& remark : run.remarks()) all += remark;
+        return all;
+    };
+    CHECK(said(0.3, {}).find("barrier \"wall\": found material up to ") == 0);
+    CHECK(said(3.0, {}).empty());
+    CHECK_FALSE(said(0.0, 1.4).empty());  // the ground before it is 1 m high
+    CHECK(said(0.0, 5.0).empty());
 }
 
 TEST_CASE("Along an unrolled floor the slope is a sine", "[structured]") {

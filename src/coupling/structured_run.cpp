@@ -53,6 +53,7 @@ LazyArray<Pair> path_of(const Scene& scene, const TileGrid& grid) {
 
 StructuredRun::StructuredRun(const Scene& scene, Start start)
     : bed_(scene.bed),
+      barriers_(scene.barriers),
       water_density_(scene.water ? scene.water->exchange.material.fluid_density : 0.0),
       alone_(scene.water ? nullptr : std::make_unique<StructuredFlow>(started(scene, start))),
       both_(scene.water ? std::make_unique<TwoPhaseFlow>(wet(scene, start)) : nullptr),
@@ -155,8 +156,14 @@ Breakage StructuredRun::breakage() const {
     PieceRule rule = kPieces;
     rule.link *= cell;
     const Neighbours::Torn torn = neighbours_.torn(flow(), kTorn * cell);
-    return Breakage{flow().status().damage, pieces(flow(), rule), neighbours_.pairs(), torn.all,
-                    torn.numerical,         flow().sub_cycling()};
+    const StructuredStatus& s = flow().status();
+    return Breakage{s.damage,
+                    pieces(flow(), rule),
+                    neighbours_.pairs(),
+                    torn.all,
+                    torn.numerical,
+                    flow().sub_cycling(),
+                    {0.0 - s.impulse.obstacles.x(), 0.0 - s.impulse.obstacles.y()}};
 }
 
 std::optional<WaterBudget> StructuredRun::water_budget() const {
@@ -184,12 +191,36 @@ std::vector<std::string> StructuredRun::remarks() const {
             fmt::format("water.profile_factor: in {} nodes and steps drag was weaker than what it adds to the "
                         "slip, and it was left out there; a smaller one, or finer grains, may help",
                         flow().status().outrun));
+    remark_on_low_barriers(remarks);
     if (now.numerical == 0) return remarks;
     remarks.push_back(
         fmt::format("structure: {} of {} pairs of neighbouring columns parted without damage to either, by the scheme "
                     "and not by the material (numerical fracture); a smaller critical_strain or finer cells may help",
                     now.numerical, now.pairs));
     return remarks;
+}
+
+/// Their boxes hold back whatever comes: where it ever stood higher than a barrier, it would have gone over it.
+void StructuredRun::remark_on_low_barriers(std::vector<std::string>& remarks) const {
+    const GridGeometry& g = bed_.geometry;
+    for (const Barrier& barrier : barriers_) {
+        double over = 0.0;
+        const Obstacle box = box_of(barrier);
+        for (Index j = 0; j < g.ny; ++j)
+            for (Index i = 0; i < g.nx; ++i) {
+                const Vec2 place(g.x(i), g.y(j)), beside = place.cwiseMax(box.low).cwiseMin(box.high);
+                if ((place - beside).cwiseAbs().maxCoeff() > g.cell) continue;
+                const double depth = map_.peak(flow().body().grid.at(i, j)).depth;
+                const double height = barrier.top ? *barrier.top - bed_.at(i, j) : barrier.height;
+                if (depth > 0.0) over = std::max(over, depth - height);
+            }
+        if (over > 0.0)
+            remarks.push_back(fmt::format(
+                "barrier \"{}\": found material up to {:.3g} m higher than the barrier beside it; expected a barrier "
+                "that is not run over, since beside material.structure it counts as any height; raise the elevation "
+                "model there instead",
+                barrier.name, over));
+    }
 }
 
 std::vector<PhaseTime> StructuredRun::timings() const {

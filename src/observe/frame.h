@@ -76,12 +76,13 @@ struct PhaseTime {
 
 /// What solids that hold together have come apart into.
 struct Breakage {
-    double damage = 0.0;         ///< mean over the mass, 0 whole, 1 grains [1]
-    std::vector<double> pieces;  ///< shares of the mass in unbroken pieces, the largest first [1]
-    Index pairs = 0;             ///< of columns that were neighbours at the start
-    Index torn = 0;              ///< of these, now apart
-    Index numerical = 0;         ///< of these, without damage to either: torn by the scheme
-    double sub_cycling = 1.0;    ///< steps for each that the depth-averaged flow would need
+    double damage = 0.0;             ///< mean over the mass, 0 whole, 1 grains [1]
+    std::vector<double> pieces;      ///< shares of the mass in unbroken pieces, the largest first [1]
+    Index pairs = 0;                 ///< of columns that were neighbours at the start
+    Index torn = 0;                  ///< of these, now apart
+    Index numerical = 0;             ///< of these, without damage to either: torn by the scheme
+    double sub_cycling = 1.0;        ///< steps for each that the depth-averaged flow would need
+    std::array<double, 2> pushed{};  ///< impulse on barriers and walls, all together, since the start [kg m/s]
 };
 
 /// What 3D points have come apart into (solid3d/pieces.h), at the last output and where it was most.

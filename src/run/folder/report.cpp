@@ -251,6 +251,20 @@ std::vector<std::size_t> shown_barriers(const RunRecord& r) {
     return shown;
 }
 
+/// Structured columns meet barriers as walls whose pushes are known together only.
+std::string barriers_beside_structure(const RunRecord& r) {
+    std::string text = "## Barriers\n\n";
+    for (const BarrierSummary& b : r.barriers) text += fmt::format("- {}\n", b.name);
+    const Breakage& of = *r.extras.breakage;
+    return text +
+           fmt::format(
+               "\nStructured columns meet a barrier as an upright box of any height, which pushes and rubs. Since the "
+               "start all barriers, with the walls along closed sides, took an impulse of {:.4g} N s in x and {:.4g} N "
+               "s "
+               "in y. What each of them took, contact times and run-up are not measured.\n\n",
+               of.pushed[0], of.pushed[1]);
+}
+
 std::string barrier_row(const BarrierSummary& b) {
     const bool reached = std::isfinite(b.run_up);
     const std::string run_up = reached ? fmt::format("{:.5g} m", b.run_up) : "-";
@@ -290,6 +304,7 @@ std::string mean_forces(const RunRecord& r, const std::vector<std::size_t>& show
 
 std::string barriers(const RunRecord& r) {
     if (r.barriers.empty()) return "";
+    if (r.extras.breakage) return barriers_beside_structure(r);
     std::string text =
         "## Barriers\n\n| Barrier | First contact | Impulse x, y, z | Run-up to elevation | Over it |\n"
         "|---|---|---|---|---|\n";

@@ -288,7 +288,8 @@ Json breakage_json(const Breakage& b) {
             {"neighbour_pairs", b.pairs},
             {"torn_pairs", b.torn},
             {"torn_without_damage", b.numerical},
-            {"sub_cycling", b.sub_cycling}};
+            {"sub_cycling", b.sub_cycling},
+            {"barriers_and_walls", {{"impulse", {{"unit", "kg m/s"}, {"x", b.pushed[0]}, {"y", b.pushed[1]}}}}}};
 }
 
 Json apart_json(const PointsApart& a) {
