@@ -1,6 +1,7 @@
 #pragma once
 // A comparison with a survey as files and for people.
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,9 @@
 namespace frana {
 
 /// The run's rasters held against a survey that was read. `bed` is null when the terrain is not known.
+/// What lies at the end without free water: all but that is a deposit. Nothing without that raster [m].
+std::optional<Raster> solids_at_end(const std::vector<ProductRaster>& rasters);
+
 Comparison compare_rasters(const std::vector<ProductRaster>& rasters, const Raster* bed, double limit,
                            const Survey& survey);
 

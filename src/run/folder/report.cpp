@@ -102,7 +102,8 @@ std::string results(const RunRecord& r) {
     if (std::isfinite(r.flow_width))
         text += row("width of the flow, median over its length",
                     fmt::format("{:.4g} m, {:.3g} cells", r.flow_width, r.flow_width / r.grid.cell));
-    text += row("deepest at the end", fmt::format("{:.4g} m", r.final_depth));
+    text += row(r.extras.water ? "deepest at the end, without free water" : "deepest at the end",
+                fmt::format("{:.4g} m", r.final_depth));
     text += row("mean speed at the end", fmt::format("{:.3g} m/s", s.last.mean_speed));
     if (r.extras.breakage) {
         const Breakage& b = *r.extras.breakage;
