@@ -110,6 +110,18 @@ TEST_CASE("Water beside a structure reaches the scene, and what does not fit it 
               "found 0.2 with fraction = 0"));
 }
 
+TEST_CASE("The resolved case of a structure leaves out the keys that it has no use for, and can be read again",
+          "[structured]") {
+    const std::string rest =
+        "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"
+        "[time]\nend = 20\n";
+    const std::string resolved = resolved_toml(CaseFile::parse(rest + structure, "slide/case.toml"));
+    CHECK_FALSE(has(resolved, "stress_cap"));
+    CHECK(has(resolved, "filter = 1"));
+    CHECK_NOTHROW(CaseFile::parse(resolved, "slide/resolved.toml"));
+    CHECK(has(resolved_toml(CaseFile::parse(rest, "slide/case.toml")), "stress_cap = 0.25"));
+}
+
 TEST_CASE("What does not fit a structure is refused in one sentence", "[structured]") {
     CHECK(has(problem_of_structure("[material.structure]\ncohesion = 2e4\n"),
               "material.structure.cohesion: found, but material.structure.law = \"none\" does not use it"));
