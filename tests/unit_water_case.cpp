@@ -131,6 +131,13 @@ TEST_CASE("A lake's size, or that there is none, and rain that no cloud has are 
     CHECK_FALSE(has(said_of("rain = 1e-4\n"), "mm/h"));
 }
 
+TEST_CASE("Viscosity that no run gets to the end with is refused", "[water][scene]") {
+    const std::string mud = "viscous = \"mud\"\nmud_alpha = 1e-3\nmud_concentration = 0.9\nmud_beta = ";
+    CHECK(has(problem_of(slope_gis(), mud + "100\n"), "expected 1e+09 steps at most; check mud_alpha"));
+    CHECK_NOTHROW(scene_of(slope_gis(), mud + "10\n"));
+    CHECK(viscous_step({2.0, 3.0, false, 0.0}, 4.0) == Approx(0.075 * 16.0 / 2.0).epsilon(1e-15));
+}
+
 TEST_CASE("Viscosity of the water is off by default; mud is thicker than clear water", "[water][scene]") {
     const auto water = [](const std::string& more) { return scene_of(slope_gis(), more).water.value(); };
     CHECK(water("").viscosity.kinematic == 0.0);

@@ -94,6 +94,19 @@ WaterExchange exchange_of(const CaseFile& file, double viscosity, const Scene& s
     return exchange;
 }
 
+/// Viscosity that no run gets to the end with.
+void refuse_endless_steps(const CaseFile& file, const WaterPhase& water, const Scene& scene, Problems& problems) {
+    constexpr double kMost = 1e9;
+    if (!(water.viscosity.kinematic > 0.0)) return;
+    const double step = viscous_step(water.viscosity, scene.bed.geometry.cell), steps = scene.end / step;
+    if (steps <= kMost) return;
+    problems.add(file.place("water.viscous"),
+                 fmt::format("found a viscosity of {:.3g} Pa s, which needs steps of {:.2g} s and {:.2g} of them",
+                             water.viscosity.kinematic * water.exchange.material.fluid_density, step, steps),
+                 fmt::format("expected {:.0e} steps at most", kMost),
+                 "check mud_alpha, mud_beta and mud_concentration, or give a larger grid.cell");
+}
+
 /// Grains and ground that free water cannot be beside; scene/combinations.cpp has the rest.
 void refuse_others(const CaseFile& file, const TwoPhaseMaterial& m, const Scene& scene, Problems& problems) {
     if (m.solid_density <= m.fluid_density)
@@ -154,6 +167,7 @@ std::optional<WaterPhase> read_water(const CaseFile& file, const GisReader& read
     if (file.word("water.viscous") != "none")
         water.viscosity = {viscosity / water.exchange.material.fluid_density, number(file, "bed_shear"),
                            file.flag("water.solid_gradient"), number(file, "profile_factor")};
+    refuse_endless_steps(file, water, scene, problems);
     refuse_others(file, water.exchange.material, scene, problems);
     return water;
 }
