@@ -109,7 +109,11 @@ void refuse_endless_steps(const CaseFile& file, const WaterPhase& water, const S
 
 /// Grains and ground that free water cannot be beside; scene/combinations.cpp has the rest.
 void refuse_others(const CaseFile& file, const TwoPhaseMaterial& m, const Scene& scene, Problems& problems) {
-    if (m.solid_density <= m.fluid_density)
+    if (!file.given("material.density"))
+        problems.add(file.place("material.density"), "not given with water.model = \"free\"",
+                     "expected the density of what the water flows beside, grains with their confined water",
+                     "give it, of loose rock about 2650");
+    else if (m.solid_density <= m.fluid_density)
         problems.add(file.place("material.density"),
                      fmt::format("found {:.6g} kg/m3, so that grains have {:.6g}", scene.density, m.solid_density),
                      fmt::format("expected grains denser than water.density = {:.6g}", m.fluid_density),
