@@ -179,7 +179,8 @@ void StructuredRun::water_fields(Frame& frame) {
            *velocity = find("velocity"), *speed = find("speed"), *pressure = find("pressure");
     const double* elevation = find("elevation");
     double *water_depth = store_.zeros(frame.nodes, "water_depth", "m", 1, g.size()),
-           *water_velocity = store_.zeros(frame.nodes, "water_velocity", "m/s", 3, g.size());
+           *water_velocity = store_.zeros(frame.nodes, "water_velocity", "m/s", 3, g.size()),
+           *water_speed = store_.zeros(frame.nodes, "water_speed", "m/s", 1, g.size());
     const double per = 0.5 / g.cell;
     for_each_node(water.grid, water.work, [&](Index k, Index n) {
         const double h = water.now.h[k];
@@ -194,6 +195,7 @@ void StructuredRun::water_fields(Frame& frame) {
             velocity[3 * n + c] = (columns * velocity[3 * n + c] + water_density_ * h * own[c]) / both;
         }
         speed[n] = Vec3(velocity[3 * n], velocity[3 * n + 1], velocity[3 * n + 2]).norm();
+        water_speed[n] = Vec3(own[0], own[1], own[2]).norm();
         water_depth[n] = h, depth[n] = all, surface[n] += h;
         thickness[n] = all / std::sqrt(1.0 + bx * bx + by * by);
         pressure[n] += water_density_ * water.normal_gravity[k] * h;
