@@ -152,7 +152,8 @@ private:
     }
 
     void compare_heights(const Comparison& found, const std::vector<ProductRaster>& rasters) {
-        const Raster* lying = of(rasters, "final_depth");
+        const std::optional<Raster> solids = solids_at_end(rasters);
+        const Raster* const lying = solids ? &*solids : nullptr;
         const auto note_blocks = [&](Evidence evidence, const Raster& ours, const Raster& theirs, double unsurveyed) {
             const BlockErrors errors = block_errors(ours, theirs, event_.correlation_);
             if (errors.number > 0.0)

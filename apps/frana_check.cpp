@@ -141,6 +141,11 @@ Forecast forecast(const Scene& scene) {
     const double reach = (scene.structure ? scene.structure->cfl : scene.scheme.cfl) * scene.bed.geometry.cell;
     result.fewest_steps = std::ceil(scene.end * (start.speed + wave) / reach);
     result.most_steps = std::ceil(scene.end * (result.fall_speed + wave) / reach);
+    if (scene.water && scene.water->viscosity.kinematic > 0.0) {
+        const double viscous = scene.end / viscous_step(scene.water->viscosity, scene.bed.geometry.cell);
+        result.fewest_steps = std::max(result.fewest_steps, std::ceil(viscous));
+        result.most_steps = std::max(result.most_steps, result.fewest_steps);
+    }
     result.particle_seconds = start.particle_seconds;
     return result;
 }

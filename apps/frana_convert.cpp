@@ -65,6 +65,14 @@ FlowColumns chosen_columns(const RunState& state, const std::vector<double>& win
     return inside;
 }
 
+/// Points are of the solids alone.
+void tell_of_water(const ConvertOptions& options, const RunState& state) {
+    if (case_of_run(options.run_dir).word("water.model") == "none") return;
+    std::cout << "free water of the run is left out, the points are of the particles alone"
+              << (state.free_water > 0.0 ? fmt::format(": {:.6g} m3 on the whole terrain", state.free_water) : "")
+              << '\n';
+}
+
 /// Memory that points take until they are written; writing VTK needs cells, compressed blocks and their base64 besides
 /// (measured from 2.5e5 to 4.5e6 points: 142 bytes a point for HDF5, 318 for VTK) [bytes].
 double bytes_needed(double points, const std::string& format) {
@@ -202,6 +210,7 @@ int convert_command(const ConvertOptions& options) {
     if (std::abs(state.time - *options.time) > 1e-9 * std::max(1.0, std::abs(state.time)))
         std::cout << fmt::format("no frame at {:.6g} s; the nearest, at {:.6g} s, is taken\n", *options.time,
                                  state.time);
+    tell_of_water(options, state);
     const FlowColumns columns = chosen_columns(state, options.window);
     require_memory(columns, choice.spacing, format);
 

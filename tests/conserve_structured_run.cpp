@@ -228,6 +228,65 @@ TEST_CASE("Grains follow a bend of the bed as the depth-averaged flow does: what
     CHECK(ran(Curvature::full, true, 0.2).speed == Approx(ran(Curvature::full, false, 0.2).speed).epsilon(0.005));
 }
 
+TEST_CASE("Grains press on a bend of the bed as the depth-averaged flow does, and frames and peaks show it",
+          "[structured]") {
+    Scene scene = scene_on(161, 31, 0.5, [](double x, double) { return 0.02 * (x - 40.0) * (x - 40.0); });
+    scene.particles = {};
+    fill(scene, [](double x, double y) { return x > 9 && x < 12 && y > 5 && y < 10 ? 0.5 : 0.0; });
+    scene.bed_law = bed::Coulomb{0.0};
+    struct Shown {
+        double most, peaks, now;  // largest peak [Pa]; sums over the nodes [Pa]
+    };
+    const auto shown = [&](bool structured, bool wet) {
+        scene.structure.reset(), scene.water.reset();
+        if (structured)
+            scene.structure = solid_of(0.0), scene.structure->share = 0.0, scene.structure->hydrostatic = true;
+        if (wet) {  // water that bears nothing, and is hardly there
+            scene.water.emplace();
+            scene.water->share = 1e-9, scene.water->exchange.pore_pressure = 0.0;
+        }
+        const std::unique_ptr<Simulation> run = make_simulation(scene);
+        go_to(*run, 2.5);
+        const Frame frame = run->frame();
+        const Field *peak = frame.node("peak_pressure"), *now = frame.node("pressure");
+        Shown of{0.0, 0.0, 0.0};
+        for (Index n = 0; n < peak->count; ++n)
+            of.most = std::max(of.most, peak->data[n]), of.peaks += peak->data[n], of.now += now->data[n];
+        return of;
+    };
+    const bool wet = GENERATE(false, true);
+    const Shown columns = shown(false, false), grains = shown(true, wet);
+    CAPTURE(wet, columns.most, grains.most, columns.peaks, grains.peaks, columns.now, grains.now);
+    CHECK(grains.most == Approx(columns.most).epsilon(0.02));
+    CHECK(grains.peaks == Approx(columns.peaks).epsilon(0.02));
+    CHECK(grains.now == Approx(columns.now).epsilon(0.02));
+}
+
+TEST_CASE("What grains lose by Rankine's earth pressure is recorded: their energy closes as that of hydrostatic ones",
+          "[structured]") {
+    // A heap that falls apart down a slope and piles up at its foot.
+    Scene scene = scene_on(81, 31, 0.5, [](double x, double) { return std::max(0.0, 5.0 - x / 3.0); });
+    scene.particles = {};
+    fill(scene, [](double x, double y) { return x > 4 && x < 9 && y > 5 && y < 10 ? 0.8 : 0.0; });
+    scene.bed_law = bed::Coulomb{0.1};
+    scene.end = 3.0;
+    const auto unaccounted = [&](bool hydrostatic, double angle) {
+        scene.structure = solid_of(0.0);
+        scene.structure->share = 0.0, scene.structure->hydrostatic = hydrostatic;
+        scene.structure->material.friction = angle * constants::kDegree;
+        const std::unique_ptr<Simulation> run = make_simulation(scene);
+        const Status first = run->frame().status;
+        go_to(*run, scene.end);
+        const Status now = run->frame().status;
+        return budget(first, now).energy_residual / (first.potential - now.potential);
+    };
+    const double hydrostatic = unaccounted(true, 32.0), five = unaccounted(false, 5.0),
+                 thirty = unaccounted(false, 32.0), steep = unaccounted(false, 45.0);
+    CAPTURE(hydrostatic, five, thirty, steep);
+    // 0.028 by the scheme, and 0.02 to 0.06 more where that work is forgotten.
+    for (const double one : {five, thirty, steep}) CHECK(std::abs(one - hydrostatic) < 0.005);
+}
+
 TEST_CASE("Free water follows a bend of the bed: what it gains is what it falls", "[structured][mixture]") {
     Scene scene = scene_on(161, 41, 0.5, [](double x, double) { return 0.02 * (x - 40.0) * (x - 40.0); });
     scene.particles = {};
@@ -343,7 +402,30 @@ TEST_CASE("A barrier's box stops a structured block, which leaves it the momentu
     const Frame frame = run.frame();
     for (Index p = 0; p < frame.particles[0].count; ++p)
         CHECK(frame.particle("position")->data[3 * p] < 12.0 + 0.5 * scene.bed.geometry.cell);
-    CHECK(run.flow().status().impulse.obstacles.x() < -0.2 * run.status().mass);
+    const Vec2 got = run.flow().status().impulse.obstacles;
+    CHECK(got.x() < -0.2 * run.status().mass);
+    CHECK(run.breakage().pushed == std::array<double, 2>{-got.x(), -got.y()});
+}
+
+TEST_CASE("A barrier that structured columns stand higher than is named, since its box holds all back",
+          "[structured]") {
+    Scene scene = sliding();
+    Barrier wall;
+    wall.name = "wall";
+    wall.outline.parts = {{{{{12.0, -5.0}, {14.0, -5.0}, {14.0, 20.0}, {12.0, 20.0}}}}};
+    const auto said = [&](double height, std::optional<double> top) {
+        wall.height = height, wall.top = top;
+        scene.barriers = {wall};
+        StructuredRun run(scene);
+        go_to(run, scene.end);
+        std::string all;
+        for (const std::string& remark : run.remarks()) all += remark;
+        return all;
+    };
+    CHECK(said(0.3, {}).find("barrier \"wall\": found material up to ") == 0);
+    CHECK(said(3.0, {}).empty());
+    CHECK_FALSE(said(0.0, 1.4).empty());  // the ground before it is 1 m high
+    CHECK(said(0.0, 5.0).empty());
 }
 
 TEST_CASE("Along an unrolled floor the slope is a sine", "[structured]") {
@@ -375,6 +457,38 @@ Scene wet_slide() {
 }
 
 }  // namespace
+
+TEST_CASE("Gauges of structured columns know the bed, dry and beside water, where material is and where not",
+          "[structured][mixture]") {
+    const bool wet = GENERATE(false, true);
+    const StructuredRun run(wet ? wet_slide() : sliding(600.0));
+    for (const Vec2& place :
+         {Vec2(6.3, 7.2), Vec2(1.1, 2.6), Vec2(30.2, 3.3)}) {  // on the block, above it, on the flat
+        const Sample sample = run.at(place);
+        CHECK(sample.elevation == Approx(std::max(0.0, 5.0 - place.x() / 3.0)).margin(1e-12));
+        CHECK((sample.depth > 0.0) == (place.x() == 6.3 || (wet && place.x() == 30.2)));
+    }
+}
+
+TEST_CASE("Velocities of grains and water together are by mass, in frames as in gauges", "[structured][mixture]") {
+    Scene scene = wet_slide();
+    scene.structure->share = 0.0, scene.structure->confined = 0.0;
+    StructuredRun run(scene);
+    go_to(run, 0.7);
+    const Frame frame = run.frame();
+    const double *depth = frame.node("depth")->data, *water = frame.node("water_depth")->data,
+                 *velocity = frame.node("velocity")->data, *own = frame.node("water_velocity")->data;
+    Index mixed = 0;
+    for (Index j = 0; j < 31; ++j)
+        for (Index i = 0; i < 81; ++i) {
+            const Index n = j * 81 + i;
+            const Vec2 at = run.at({0.5 * static_cast<double>(i), 0.5 * static_cast<double>(j)}).velocity;
+            CHECK(velocity[3 * n] == Approx(at.x()).margin(1e-12));
+            CHECK(velocity[3 * n + 1] == Approx(at.y()).margin(1e-12));
+            mixed += water[n] > 0.1 && depth[n] > water[n] + 0.1 && std::abs(velocity[3 * n] - own[3 * n]) > 0.1;
+        }
+    CHECK(mixed > 5);
+}
 
 TEST_CASE("No step before an output is a crumb, with structured columns and with water", "[structured][mixture]") {
     Scene scene = GENERATE(false, true) ? wet_slide() : sliding(600.0);
@@ -421,7 +535,7 @@ TEST_CASE("A run with water keeps mass and momentum of both, and its water's vol
     while (run.status().time < scene.end) {
         run.advance(scene.end);
         const Status& now = run.status();
-        worst = std::max(worst, std::abs(now.mass + now.mass_left - first.mass - first.mass_left) / first.mass);
+        worst = std::max(worst, std::abs(now.mass + now.mass_left - now.mass_in - first.mass) / first.mass);
         for (const std::size_t axis : {0, 1})
             worst = std::max(worst, std::abs(now.momentum[axis] + now.momentum_left[axis] - first.momentum[axis] -
                                              (now.impulse[axis] - first.impulse[axis])) /
@@ -440,6 +554,39 @@ TEST_CASE("A run with water keeps mass and momentum of both, and its water's vol
     }
     CHECK(volume == Approx(run.water()->status().volume).epsilon(1e-12));
     require_finite(frame);
+}
+
+TEST_CASE("Rain has come in and what seeps away has left: none of both is negative", "[structured][mixture]") {
+    Scene scene = wet_slide();
+    scene.water->infiltration = Raster::filled(scene.bed.geometry, 1e-5);
+    StructuredRun run(scene);
+    const Status first = run.frame().status;
+    double lowest = 0.0;
+    while (run.status().time < scene.end) {
+        run.advance(scene.end);
+        lowest = std::min(lowest, run.status().mass_left);
+    }
+    const Status now = run.frame().status;
+    const WaterBudget water = run.water_budget().value();
+    CHECK(lowest == 0.0);
+    CHECK(water.infiltrated > 0.0);
+    CHECK(now.mass_in == Approx(1000.0 * (water.rained + water.entered)).epsilon(1e-14));
+    CHECK(now.mass_left == Approx(1000.0 * (water.left + water.infiltrated)).epsilon(1e-14));
+    CHECK(water.infiltrated_mass == Approx(1000.0 * water.infiltrated).epsilon(1e-14));
+    CHECK(std::abs(budget(first, now).mass_error) < 1e-13);
+}
+
+TEST_CASE("Progress tells the volume of solids and of water, each by its density", "[structured][mixture]") {
+    Scene scene = wet_slide();
+    scene.end = 0.05;
+    StructuredRun wet(scene);
+    Observers nobody;
+    std::ostringstream stream;
+    Progress progress(stream, Progress::Style::lines, scene.density);
+    run(wet, {scene.end, scene.end, false}, nobody, Interrupt(), progress);
+    const double volume = wet.flow().status().mass / scene.density + wet.water()->status().volume;
+    CAPTURE(stream.str());
+    CHECK(stream.str().find(fmt::format("particles  {:.4g} m3", volume)) != std::string::npos);
 }
 
 TEST_CASE("A lake over a heap of grains is level from the start", "[structured][mixture]") {
@@ -561,7 +708,7 @@ public:
     std::string name() const override { return "whole frames"; }
     void observe(const Frame& frame) override {
         times_.push_back(frame.status.time);
-        const double mass = frame.status.mass + frame.status.mass_left;
+        const double mass = frame.status.mass + frame.status.mass_left - frame.status.mass_in;
         if (times_.size() == 1) whole_ = mass;
         CHECK(mass == Approx(whole_).epsilon(1e-12));
     }

@@ -239,3 +239,22 @@ TEST_CASE("A damaged frame is named, and nothing is written", "[convert]") {
     CHECK_THAT(refused("damaged --time 1 --spacing 1 --out d.csv").err, Contains("damaged/run.h5: cannot be read: "));
     CHECK_FALSE(fs::exists(finished_run().folder() / "d.csv"));
 }
+
+TEST_CASE("Of a run with free water the points are of its grains alone, and the water that is left out is said",
+          "[convert]") {
+    const PlaneCase scene;
+    scene.write(
+        "[material]\ndensity = 2650\n[material.structure]\nlaw = \"drucker_prager\"\ncohesion = 0\nfraction = 0\n"
+        "friction_angle_deg = 30\nyoung_modulus = 1e6\n[water]\nmodel = \"free\"\nlevel = 88\n"
+        "[boundary]\nsides = \"wall\"\n[output]\nevery = 2\nformats = [\"vtk\"]\n");
+    const Outcome run = scene.frana("run CASE --out out --quiet --threads 1");
+    INFO(run.err);
+    REQUIRE(run.code == 0);
+    double volume = 0.0;  // below 88 m lie the last columns of nodes, from the 25th on
+    for (int column = 25; column < 30; ++column) volume += 20 * 25.0 * (88.0 - (100.0 - 0.5 * column));
+    const Outcome outcome = scene.frana("convert out --time 0 --spacing 1 --out points.csv");
+    CHECK(outcome.code == 0);
+    CHECK_THAT(outcome.out, Contains(fmt::format("free water of the run is left out, the points are of the particles "
+                                                 "alone: {:.6g} m3 on the whole terrain\n",
+                                                 volume)));
+}

@@ -7,6 +7,7 @@
 #include "fresh_folder.h"
 #include "io/gdal_reader.h"
 #include "io_gdal_make.h"
+#include "run/folder/comparison.h"
 
 using namespace frana;
 namespace fs = std::filesystem;
@@ -231,4 +232,23 @@ TEST_CASE("A surveyed deposit keeps its volume beyond the terrain, on the run's 
         user_error([&] { GdalReader().read_deposit(files / "nowhere.tif", terrain, wkt_of("EPSG:32632"), log); });
     CHECK(contains(message, "has no CRS"));
     CHECK(is_one_sentence(message));
+}
+
+TEST_CASE("A deposit is what lies at the end without free water, and that the rest counts it is said", "[survey]") {
+    const GridGeometry grid{30, 20, 0.0, 0.0, 5.0};
+    const Raster depth = Raster::filled(grid, 3.0);
+    Raster water = Raster::filled(grid, 2.0);
+    water.at(3, 3) = Raster::nodata, water.at(4, 4) = 3.0, water.at(5, 5) = 3.0 + 1e-15;
+    std::vector<ProductRaster> rasters = {{"peak_depth", "m", "", depth}, {"final_depth", "m", "", depth}};
+    CHECK(solids_at_end(rasters)->at(4, 4) == 3.0);
+    Survey survey;
+    survey.footprint.parts = {Polygon{{{{10, 10}, {60, 10}, {60, 60}, {10, 60}}}}};
+    survey.deposit = Raster::filled(grid, 1.0);
+    rasters.push_back({"final_water_depth", "m", "", water});
+    const Raster solids = solids_at_end(rasters).value();
+    CHECK((solids.at(0, 0) == 1.0 && solids.at(3, 3) == 3.0 && solids.at(4, 4) == 0.0 && solids.at(5, 5) == 0.0));
+    const Comparison found = compare_rasters(rasters, nullptr, 0.1, survey);
+    CHECK(found.deposit->simulated_volume == Approx(25.0 * (597 + 3)).epsilon(1e-12));
+    CHECK(found.remarks.back().find("free water counts among everything ever covered") == 0);
+    CHECK_FALSE(solids_at_end({}).has_value());
 }

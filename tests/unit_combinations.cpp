@@ -26,7 +26,7 @@ std::vector<std::string> examples(const Values& values, bool named = true) {
     if (are == Are::above_zero || are == Are::zero) return {named == (are == Are::zero) ? "0" : "0.5"};
     if (are == Are::on || are == Are::off) return {named == (are == Are::on) ? "true" : "false"};
     if (values.are == Are::without) return {"[\"png\"]"};
-    if (are == Are::given) return {"0.5"};
+    if (are == Are::given) return named ? std::vector<std::string>{"0.5"} : std::vector<std::string>{};
     if (values.are == Are::tables) return {""};
     if (values.are == Are::rasters) return {named ? "mu.tif" : "0.5"};
     std::vector<std::string> all = find_parameter(values.key)->choices;

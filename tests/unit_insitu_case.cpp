@@ -156,6 +156,9 @@ TEST_CASE("A bad entry is refused with its place, what was found, what is expect
           "slide/case.toml:11: insitu.0.field: found \"stress_xx\" in a case without stress; expected a field of this "
           "case, since material.rheology.law = \"none\" has no stress; choose another field, or give the mass a "
           "rheology");
+    CHECK(problem_of(figure("field = \"water_depth\"\n")) ==
+          "slide/case.toml:11: insitu.0.field: found \"water_depth\" in a case without free water; expected a field of "
+          "this case, since water.model = \"none\"; choose another field, or set water.model = \"free\"");
     CHECK(problem_of(figure("field = \"mass\"\n")) ==
           "slide/case.toml:11: insitu.0.field: found \"mass\", which nodes do not have; expected a field of the grid; "
           "choose another field; of = \"particles\" with kind = \"threshold\" has it");
@@ -164,8 +167,9 @@ TEST_CASE("A bad entry is refused with its place, what was found, what is expect
           "\"depth\", \"thickness\", \"speed\", \"velocity_x\", \"velocity_y\", \"velocity_z\", \"pressure\", "
           "\"surface\", \"elevation\", \"peak_depth\", \"peak_speed\", \"peak_pressure\", \"arrival_time\", "
           "\"peak_dynamic_pressure\", \"stress_xx\", \"stress_yy\", \"stress_xy\", \"effective_stress_xx\", \"mass\", "
-          "\"effective_stress_yy\", \"volume\", \"effective_stress_xy\", \"damage\", \"cohesion\", \"id\", "
-          "quantity that is looked at, one number a place; add field = ... under [[insitu]]");
+          "\"effective_stress_yy\", \"volume\", \"effective_stress_xy\", \"damage\", \"cohesion\", "
+          "\"water_depth\", \"water_speed\", \"water_velocity_x\", \"water_velocity_y\", \"water_velocity_z\", "
+          "\"id\", quantity that is looked at, one number a place; add field = ... under [[insitu]]");
     CHECK(problem_of(figure("field = \"depth\"\nlevels = [1]\n")) ==
           "slide/case.toml:12: insitu.0.levels: found, but insitu.kind = \"figure\" does not use it; expected with "
           "contour only; remove it, or choose insitu.kind");

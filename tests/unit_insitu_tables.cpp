@@ -202,3 +202,29 @@ TEST_CASE("A reduction has extremes, mean, area and volume of what is deep enoug
     CHECK(std::isnan(table.column("depth_max")[1]));
     CHECK(std::isnan(table.column("depth_mean")[1]));
 }
+
+TEST_CASE("Where free water is alone damage says nothing, and is not in its statistics", "[insitu]") {
+    const FreshFolder folder;
+    SmallFrame made;
+    std::vector<double> water(12, 0.0), damage(12, 0.0);
+    for (std::size_t k = 1; k < 12; ++k)
+        if (k < 6)
+            water[k] = made.depth[k];  // alone
+        else
+            damage[k] = 0.25 * static_cast<double>(k - 5), water[k] = 0.25;
+    made.frame.nodes.push_back({"water_depth", "m", 1, water.data(), 12});
+    made.frame.nodes.push_back({"damage", "1", 1, damage.data(), 12});
+    const fs::path csv = folder.path() / "damage.csv";
+    const auto work = make_reduction(csv, {"damage", "water_depth"}, 0.1);
+    work->sample(made.frame, 0);
+    std::copy(made.depth.begin(), made.depth.end(), water.begin());
+    work->sample(made.frame, 1);
+    const Table table = read_table(csv);
+    CHECK(table.column("area")[0] == 28.0);  // nodes 1 to 7
+    CHECK(table.column("damage_min")[0] == 0.25);
+    CHECK(table.column("damage_max")[0] == 0.5);
+    CHECK(table.column("damage_mean")[0] == 0.375);
+    CHECK(table.column("water_depth_max")[0] == 2.5);
+    CHECK(table.column("area")[1] == 28.0);
+    CHECK(std::isnan(table.column("damage_mean")[1]));
+}

@@ -98,7 +98,11 @@ TEST_CASE("Water beside a structure reaches the scene, and what does not fit it 
     CHECK(water.exchange.material.solid_density == Approx((1900.0 - 250.0) / 0.75).epsilon(1e-15));
     CHECK(has(problem_of_structure(density + free), "found \"free\" without material.structure"));
     CHECK(has(problem_of_structure(density + structure + "confined_water = 0.2\n"), "found 0.2 without free water"));
-    CHECK(has(problem_of_structure(structure + free), "expected grains denser than water.density = 1000"));
+    CHECK(has(problem_of_structure("[material]\ndensity = 1000.0\n" + structure + free),
+              "expected grains denser than water.density = 1000"));
+    CHECK(has(problem_of_structure(structure + free),
+              "material.density: not given with water.model = \"free\"; expected the density of what the water flows "
+              "beside"));
     CHECK(has(problem_of_structure(density + structure + free + "share = 1.0\n"), "water.share: found 1"));
     CHECK(
         has(problem_of_structure(density + structure + "confined_water = 1.5\n" + free), "confined_water: found 1.5"));
@@ -108,6 +112,32 @@ TEST_CASE("Water beside a structure reaches the scene, and what does not fit it 
             "found a barrier with water.model"));
     CHECK(has(problem_of_structure(density + structure + "fraction = 0.0\nconfined_water = 0.2\n" + free),
               "found 0.2 with fraction = 0"));
+}
+
+TEST_CASE("A kind's density is that of what flows, and beside water the grains' own is asked for",
+          "[structured][mixture]") {
+    const std::string kind = "[case]\nkind = \"debris_flow\"\n", free = "[water]\nmodel = \"free\"\n";
+    CHECK(has(problem_of_structure(kind + structure + free), "material.density: not given with water.model"));
+    const auto ranges = [&](const std::string& rest) {
+        const Scene scene = scene_of(kind + "[material]\ndensity = 2650.0\n" + structure + rest);
+        return std::count_if(scene.log.begin(), scene.log.end(), [](const std::string& line) {
+            return has(line, "material.density: ") && has(line, "for debris_flow");
+        });
+    };
+    CHECK(ranges("") == 1);
+    CHECK(ranges(free) == 0);
+}
+
+TEST_CASE("The resolved case of a structure leaves out the keys that it has no use for, and can be read again",
+          "[structured]") {
+    const std::string rest =
+        "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"
+        "[time]\nend = 20\n";
+    const std::string resolved = resolved_toml(CaseFile::parse(rest + structure, "slide/case.toml"));
+    CHECK_FALSE(has(resolved, "stress_cap"));
+    CHECK(has(resolved, "filter = 1"));
+    CHECK_NOTHROW(CaseFile::parse(resolved, "slide/resolved.toml"));
+    CHECK(has(resolved_toml(CaseFile::parse(rest, "slide/case.toml")), "stress_cap = 0.25"));
 }
 
 TEST_CASE("What does not fit a structure is refused in one sentence", "[structured]") {

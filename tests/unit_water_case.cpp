@@ -1,4 +1,7 @@
 // [water] of a case: rates as rasters, and what is wrong with them; viscosity; what makes grains settle.
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "analytic_scene.h"
@@ -99,6 +102,40 @@ TEST_CASE("A run in the rain of a raster records what it brings and what the gro
     CHECK(std::abs(run.water()->volume_residual()) < 1e-13 * l.rained);
     for (Index j = 0; j < 31; ++j)  // where the ground takes more than falls nothing stays
         CHECK(run.water()->at(12, j).depth < 1e-3);
+}
+
+namespace {
+
+std::string said_of(const std::string& water) {
+    std::string said;
+    for (const std::string& line : scene_of(slope_gis(), water).log) said += line + "\n";
+    return said;
+}
+
+}  // namespace
+
+TEST_CASE("A lake's size, or that there is none, and rain that no cloud has are remarked upon", "[water][scene]") {
+    const Raster bed = slope_gis().rasters.at("dem.tif");
+    const double low = *std::min_element(bed.values.begin(), bed.values.end());
+    const std::string none = said_of(fmt::format("level = {}\n", low - 1.0));
+    CHECK(has(none, "which floods nothing; expected a level above the lowest ground"));
+    double volume = 0.0, area = 0.0;
+    for (const double z : bed.values)
+        if (z < low + 5.0) volume += 25.0 * (low + 5.0 - z), area += 25.0;
+    const std::string level = fmt::format("level = {}\n", low + 5.0);
+    CHECK(has(said_of(level),
+              fmt::format("floods {:.4g} m2 of the ground with {:.4g} m3, 5 m deep at most", area, volume)));
+    CHECK(has(said_of(level), "it meets open sides over "));
+    CHECK_FALSE(has(said_of(level + "[boundary]\nsides = \"wall\"\n"), "it meets open sides"));
+    CHECK(has(said_of("rain = 30\n"), "water.rain: found up to 30 m/s; expected 0.0001 m/s at most"));
+    CHECK_FALSE(has(said_of("rain = 1e-4\n"), "mm/h"));
+}
+
+TEST_CASE("Viscosity that no run gets to the end with is refused", "[water][scene]") {
+    const std::string mud = "viscous = \"mud\"\nmud_alpha = 1e-3\nmud_concentration = 0.9\nmud_beta = ";
+    CHECK(has(problem_of(slope_gis(), mud + "100\n"), "expected 1e+09 steps at most; check mud_alpha"));
+    CHECK_NOTHROW(scene_of(slope_gis(), mud + "10\n"));
+    CHECK(viscous_step({2.0, 3.0, false, 0.0}, 4.0) == Approx(0.075 * 16.0 / 2.0).epsilon(1e-15));
 }
 
 TEST_CASE("Viscosity of the water is off by default; mud is thicker than clear water", "[water][scene]") {

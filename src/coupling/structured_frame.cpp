@@ -80,7 +80,7 @@ void StructuredRun::particle_fields(Frame& frame) {
         velocity[3 * p] = q.vx[p], velocity[3 * p + 1] = q.vy[p], velocity[3 * p + 2] = up;
         speed[p] = std::sqrt(q.vx[p] * q.vx[p] + q.vy[p] * q.vy[p] + up * up);
         elevation[p] = z, surface[p] = z + h;
-        pressure[p] = body.density * h * from_nodes(body, p, [&](Index k) { return body.ground[k].across; });
+        pressure[p] = body.density * h * from_nodes(body, p, [&](Index k) { return StructuredMap::pressing(body, k); });
         mass[p] = q.mass[p], volume[p] = q.volume[p], id[p] = static_cast<double>(q.id[p]);
         stress[3 * p] = holds * q.xx[p], stress[3 * p + 1] = holds * q.yy[p], stress[3 * p + 2] = holds * q.xy[p];
         const Sym2 k =
@@ -124,7 +124,7 @@ void StructuredRun::node_fields(Frame& frame) {
         thickness[n] = h / std::sqrt(1.0 + ground.slope_x * ground.slope_x + ground.slope_y * ground.slope_y);
         velocity[3 * n] = node.vx, velocity[3 * n + 1] = node.vy, velocity[3 * n + 2] = up;
         speed[n] = std::sqrt(node.vx * node.vx + node.vy * node.vy + up * up);
-        pressure[n] = body.density * ground.across * h;
+        pressure[n] = body.density * StructuredMap::pressing(body, k) * h;
     });
 }
 
@@ -168,7 +168,7 @@ void StructuredRun::inner_fields(Frame& frame) {
     });
 }
 
-/// Depth, surface, velocity and pressure of nodes are those of both; the water's own are apart.
+/// Depth, surface and pressure of nodes are those of both, velocity that of both masses together; the water's own are apart.
 void StructuredRun::water_fields(Frame& frame) {
     const WaterBody& water = both_->water().body();
     const GridGeometry& g = bed_.geometry;
@@ -179,7 +179,8 @@ void StructuredRun::water_fields(Frame& frame) {
            *velocity = find("velocity"), *speed = find("speed"), *pressure = find("pressure");
     const double* elevation = find("elevation");
     double *water_depth = store_.zeros(frame.nodes, "water_depth", "m", 1, g.size()),
-           *water_velocity = store_.zeros(frame.nodes, "water_velocity", "m/s", 3, g.size());
+           *water_velocity = store_.zeros(frame.nodes, "water_velocity", "m/s", 3, g.size()),
+           *water_speed = store_.zeros(frame.nodes, "water_speed", "m/s", 1, g.size());
     const double per = 0.5 / g.cell;
     for_each_node(water.grid, water.work, [&](Index k, Index n) {
         const double h = water.now.h[k];
@@ -187,12 +188,14 @@ void StructuredRun::water_fields(Frame& frame) {
         const double bx = per * (water.bed[k + 1] - water.bed[k - 1]),
                      by = per * (water.bed[k + water.grid.stride()] - water.bed[k - water.grid.stride()]);
         const double u = h > water.film ? water.now.qx[k] / h : 0.0, v = h > water.film ? water.now.qy[k] / h : 0.0;
-        const double own[3] = {u, v, map_.climb(k, u, v)}, before = depth[n], all = before + h;
+        const double own[3] = {u, v, map_.climb(k, u, v)}, all = depth[n] + h,
+                     columns = flow().body().density * depth[n], both = columns + water_density_ * h;
         for (int c = 0; c < 3; ++c) {
             water_velocity[3 * n + c] = own[c];
-            velocity[3 * n + c] = (before * velocity[3 * n + c] + h * own[c]) / all;
+            velocity[3 * n + c] = (columns * velocity[3 * n + c] + water_density_ * h * own[c]) / both;
         }
         speed[n] = Vec3(velocity[3 * n], velocity[3 * n + 1], velocity[3 * n + 2]).norm();
+        water_speed[n] = Vec3(own[0], own[1], own[2]).norm();
         water_depth[n] = h, depth[n] = all, surface[n] += h;
         thickness[n] = all / std::sqrt(1.0 + bx * bx + by * by);
         pressure[n] += water_density_ * water.normal_gravity[k] * h;

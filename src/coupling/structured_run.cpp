@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "particles/bed_points.h"
+
 namespace frana {
 namespace {
 
@@ -51,6 +53,7 @@ LazyArray<Pair> path_of(const Scene& scene, const TileGrid& grid) {
 
 StructuredRun::StructuredRun(const Scene& scene, Start start)
     : bed_(scene.bed),
+      barriers_(scene.barriers),
       water_density_(scene.water ? scene.water->exchange.material.fluid_density : 0.0),
       alone_(scene.water ? nullptr : std::make_unique<StructuredFlow>(started(scene, start))),
       both_(scene.water ? std::make_unique<TwoPhaseFlow>(wet(scene, start)) : nullptr),
@@ -85,7 +88,7 @@ void StructuredRun::accumulate() {
     }
     status_.kinetic = s.bed_kinetic, status_.potential = s.potential;
     status_.stored = s.stored;
-    status_.dissipated = s.friction + s.obstacle_work + (s.worked - s.stored);
+    status_.dissipated = s.friction + s.squeezed + s.obstacle_work + (s.worked - s.stored);
     status_.energy_left = s.energy_left;
     status_.max_speed = map_.extent().max_speed, status_.max_speed_on_map = s.max_speed;
     status_.mean_speed = map_.extent().mean_speed();
@@ -95,8 +98,8 @@ void StructuredRun::accumulate() {
     if (both_) accumulate_water();
 }
 
-/// The water's part. Rain and what the ground takes count as gone through the sides. Of its energy friction, viscosity and
-/// drag are recorded; what shocks and the scheme take is what is left, the residual.
+/// The water's part. Rain has come in, and what the ground takes has left. Of its energy friction, viscosity and drag are
+/// recorded; what shocks and the scheme take is what is left, the residual.
 void StructuredRun::accumulate_water() {
     const WaterStatus& w = both_->water().status();
     const WaterLedger& l = w.ledger;
@@ -105,7 +108,9 @@ void StructuredRun::accumulate_water() {
                thrust = w.momentum_given + l.ground + l.walls + l.friction + l.columns;
     status_.dt = w.dt;
     status_.mass = mass;
-    status_.mass_left += density * (l.left + l.infiltrated - l.rained);
+    status_.water = density * w.volume, status_.water_volume = w.volume;
+    status_.mass_left += density * (l.left + l.infiltrated);
+    status_.mass_in = density * (l.rained + l.entered);
     for (std::size_t axis = 0; axis < 2; ++axis) {
         const auto k = static_cast<Eigen::Index>(axis);
         status_.momentum[axis] += density * w.momentum[k];
@@ -116,7 +121,8 @@ void StructuredRun::accumulate_water() {
     status_.potential += density * both_->water_potential();
     status_.dissipated += density * (l.braked + l.sheared) + flow().status().dragged;
     const WaterBody& body = both_->water().body();
-    status_.energy_left += density * (l.energy_out + body.gravity * body.datum * (l.left + l.infiltrated - l.rained));
+    status_.energy_left +=
+        density * (l.energy_out + body.gravity * body.datum * (l.left + l.infiltrated - l.rained - l.entered));
     status_.max_speed_on_map = std::max(status_.max_speed_on_map, w.max_speed);
 }
 
@@ -133,8 +139,16 @@ MovingMass StructuredRun::motion(const MotionQuery& query) const {
 
 Sample StructuredRun::at(const Vec2& point) const {
     Sample sample;
+    sample.elevation = bed_below(bed_, point.x(), point.y());
     StructuredMap::sample(flow().body(), water(), point, sample.depth, sample.velocity);
-    sample.speed = sample.velocity.norm();
+    const TileGrid& grid = flow().body().grid;
+    const GridGeometry& g = grid.geometry();
+    const auto place = [&](double at, double start, Index count) {
+        return std::clamp((at - start) / g.cell, 0.0, static_cast<double>(count - 1));
+    };
+    const Index k = grid.nearest(place(point.x(), g.x0, g.nx), place(point.y(), g.y0, g.ny));
+    const double vx = sample.velocity.x(), vy = sample.velocity.y();
+    sample.speed = std::hypot(vx, vy, map_.climb(k, vx, vy));
     return sample;
 }
 
@@ -150,8 +164,14 @@ Breakage StructuredRun::breakage() const {
     PieceRule rule = kPieces;
     rule.link *= cell;
     const Neighbours::Torn torn = neighbours_.torn(flow(), kTorn * cell);
-    return Breakage{flow().status().damage, pieces(flow(), rule), neighbours_.pairs(), torn.all,
-                    torn.numerical,         flow().sub_cycling()};
+    const StructuredStatus& s = flow().status();
+    return Breakage{s.damage,
+                    pieces(flow(), rule),
+                    neighbours_.pairs(),
+                    torn.all,
+                    torn.numerical,
+                    flow().sub_cycling(),
+                    {0.0 - s.impulse.obstacles.x(), 0.0 - s.impulse.obstacles.y()}};
 }
 
 std::optional<WaterBudget> StructuredRun::water_budget() const {
@@ -162,6 +182,7 @@ std::optional<WaterBudget> StructuredRun::water_budget() const {
     b.given = both_->volume_given(), b.free = w.volume, b.confined = both_->confined();
     b.released = flow().status().released;
     b.rained = l.rained, b.infiltrated = l.infiltrated, b.left = l.left + flow().status().confined_left;
+    b.entered = l.entered, b.infiltrated_mass = water_density_ * l.infiltrated;
     b.solids_left = flow().status().mass_left - water_density_ * flow().status().confined_left;
     b.residual = both_->volume_residual();
     b.bed = water_density_ * l.braked, b.viscosity = water_density_ * l.sheared, b.drag = flow().status().dragged;
@@ -178,12 +199,36 @@ std::vector<std::string> StructuredRun::remarks() const {
             fmt::format("water.profile_factor: in {} nodes and steps drag was weaker than what it adds to the "
                         "slip, and it was left out there; a smaller one, or finer grains, may help",
                         flow().status().outrun));
+    remark_on_low_barriers(remarks);
     if (now.numerical == 0) return remarks;
     remarks.push_back(
         fmt::format("structure: {} of {} pairs of neighbouring columns parted without damage to either, by the scheme "
                     "and not by the material (numerical fracture); a smaller critical_strain or finer cells may help",
                     now.numerical, now.pairs));
     return remarks;
+}
+
+/// Their boxes hold back whatever comes: where it ever stood higher than a barrier, it would have gone over it.
+void StructuredRun::remark_on_low_barriers(std::vector<std::string>& remarks) const {
+    const GridGeometry& g = bed_.geometry;
+    for (const Barrier& barrier : barriers_) {
+        double over = 0.0;
+        const Obstacle box = box_of(barrier);
+        for (Index j = 0; j < g.ny; ++j)
+            for (Index i = 0; i < g.nx; ++i) {
+                const Vec2 place(g.x(i), g.y(j)), beside = place.cwiseMax(box.low).cwiseMin(box.high);
+                if ((place - beside).cwiseAbs().maxCoeff() > g.cell) continue;
+                const double depth = map_.peak(flow().body().grid.at(i, j)).depth;
+                const double height = barrier.top ? *barrier.top - bed_.at(i, j) : barrier.height;
+                if (depth > 0.0) over = std::max(over, depth - height);
+            }
+        if (over > 0.0)
+            remarks.push_back(fmt::format(
+                "barrier \"{}\": found material up to {:.3g} m higher than the barrier beside it; expected a barrier "
+                "that is not run over, since beside material.structure it counts as any height; raise the elevation "
+                "model there instead",
+                barrier.name, over));
+    }
 }
 
 std::vector<PhaseTime> StructuredRun::timings() const {

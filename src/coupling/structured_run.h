@@ -18,6 +18,9 @@ StructuredScene structured_scene(const Scene& scene);
 /// The same with its water. Holds on to `scene` until a flow is made of it.
 TwoPhaseScene two_phase_scene(const Scene& scene);
 
+/// The box of a barrier's outline, which the case's reader has found to be one.
+Obstacle box_of(const Barrier& barrier);
+
 class StructuredRun final : public Simulation {
 public:
     /// `scene` has a structure.
@@ -53,7 +56,10 @@ private:
     void inner_fields(Frame& frame);
     void water_fields(Frame& frame);
 
+    void remark_on_low_barriers(std::vector<std::string>& remarks) const;
+
     Raster bed_;
+    std::vector<Barrier> barriers_;
     double water_density_ = 0.0;
     std::unique_ptr<StructuredFlow> alone_;  ///< of a dry run
     std::unique_ptr<TwoPhaseFlow> both_;     ///< of one with water

@@ -97,7 +97,8 @@ void add_walls(const GridGeometry& g, std::vector<Obstacle>& obstacles) {
     }
 }
 
-/// The box of a barrier's outline, which the case's reader has found to be one.
+}  // namespace
+
 Obstacle box_of(const Barrier& barrier) {
     Obstacle box;
     const std::vector<Vec2>& ring = barrier.outline.parts.front().rings.front();
@@ -106,8 +107,6 @@ Obstacle box_of(const Barrier& barrier) {
     box.friction = barrier.stuck ? Obstacle::kFar : barrier.friction;
     return box;
 }
-
-}  // namespace
 
 namespace {
 
@@ -243,6 +242,7 @@ TwoPhaseScene two_phase_scene(const Scene& scene) {
         return [&rate, node](double x, double y) { return rate.values[node(x, y)]; };
     };
     w.rain = on_nodes(of.rain), w.infiltration = on_nodes(of.infiltration);
+    w.level = of.level;
     w.sides.fill(scene.sides == Sides::wall ? WaterSide::wall : WaterSide::open);
     if (s.columns.curved) w.curvature = curvature_of(s.columns);
     w.friction = of.friction, w.viscosity = of.viscosity;

@@ -22,6 +22,14 @@ struct WaterViscosity {
     double profile = 0.0;  ///< xi of that term: how solids are spread over the depth, 0 evenly, 3 as a parabola [1]
 };
 
+/// THEORY (11): the longest stable step under viscosity inside, on cells of a length [s]; infinite without. It is explicit: a
+/// thin cell beside deep ones has four faces twice as thick as itself, two with twice the viscosity, so that its rates are
+/// 24 nu / cell^2 at most, half that in water of one depth.
+inline double viscous_step(const WaterViscosity& viscosity, double cell) {
+    constexpr double kSafe = 0.9 * 2.0 / 24.0;
+    return kSafe * cell * cell / viscosity.kinematic;
+}
+
 /// Where friction acts.
 struct WaterBed {
     double gravity;    ///< g [m/s^2]

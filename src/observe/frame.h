@@ -28,15 +28,16 @@ struct Status : Clock {
     double mass_left = 0.0;  ///< left through open sides or exits since the start [kg]
     double mass_in = 0.0;    ///< came in by inflows, or was released later, since the start [kg]; its momentum
                              ///< and energy count as what did not leave
-    std::array<double, 2> momentum{};       ///< [kg m/s]
-    std::array<double, 2> impulse{};        ///< of all forces since the start [kg m/s]; with walls their push
-                                            ///< is recorded as what closes the balance
-    std::array<double, 2> momentum_left{};  ///< carried out by what left [kg m/s]
-    double kinetic = 0.0;                   ///< [J]
-    double potential = 0.0;                 ///< sum of rho g A h (Z + h/2) [J]
-    double dissipated = 0.0;                ///< by bed friction, rheology and bores since the start [J]
-    double energy_left = 0.0;               ///< carried out by what left [J]
-    double stored = 0.0;                    ///< of 3D points: of deformation, that unloading gives back [J]
+    std::array<double, 2> momentum{};        ///< [kg m/s]
+    std::array<double, 2> impulse{};         ///< of all forces since the start [kg m/s]; with walls their push
+                                             ///< is recorded as what closes the balance
+    std::array<double, 2> momentum_left{};   ///< carried out by what left [kg m/s]
+    double water = 0.0, water_volume = 0.0;  ///< free water's part of `mass` [kg], and its volume [m3]
+    double kinetic = 0.0;                    ///< [J]
+    double potential = 0.0;                  ///< sum of rho g A h (Z + h/2) [J]
+    double dissipated = 0.0;                 ///< by bed friction, rheology and bores since the start [J]
+    double energy_left = 0.0;                ///< carried out by what left [J]
+    double stored = 0.0;                     ///< of 3D points: of deformation, that unloading gives back [J]
     /// Of 3D points since the start, parts of `dissipated` [J].
     struct In3d {
         double friction = 0.0;   ///< along the bed and barriers
@@ -75,12 +76,13 @@ struct PhaseTime {
 
 /// What solids that hold together have come apart into.
 struct Breakage {
-    double damage = 0.0;         ///< mean over the mass, 0 whole, 1 grains [1]
-    std::vector<double> pieces;  ///< shares of the mass in unbroken pieces, the largest first [1]
-    Index pairs = 0;             ///< of columns that were neighbours at the start
-    Index torn = 0;              ///< of these, now apart
-    Index numerical = 0;         ///< of these, without damage to either: torn by the scheme
-    double sub_cycling = 1.0;    ///< steps for each that the depth-averaged flow would need
+    double damage = 0.0;             ///< mean over the mass, 0 whole, 1 grains [1]
+    std::vector<double> pieces;      ///< shares of the mass in unbroken pieces, the largest first [1]
+    Index pairs = 0;                 ///< of columns that were neighbours at the start
+    Index torn = 0;                  ///< of these, now apart
+    Index numerical = 0;             ///< of these, without damage to either: torn by the scheme
+    double sub_cycling = 1.0;        ///< steps for each that the depth-averaged flow would need
+    std::array<double, 2> pushed{};  ///< impulse on barriers and walls, all together, since the start [kg m/s]
 };
 
 /// What 3D points have come apart into (solid3d/pieces.h), at the last output and where it was most.
@@ -111,6 +113,8 @@ struct WaterBudget {
     double given = 0.0, free = 0.0, confined = 0.0;      ///< at the start, all; now [m3]
     double released = 0.0;                               ///< by what broke, since the start [m3]
     double rained = 0.0, infiltrated = 0.0, left = 0.0;  ///< the last also within columns [m3]
+    double entered = 0.0;                                ///< from a lake beyond open sides [m3]
+    double infiltrated_mass = 0.0;                       ///< [kg]
     double solids_left = 0.0;                            ///< mass of grains that left within columns [kg]
     double residual = 0.0;                               ///< of all these: round-off [m3]
     double bed = 0.0, viscosity = 0.0, drag = 0.0;       ///< energy lost there [J]

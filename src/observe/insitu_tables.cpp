@@ -68,14 +68,21 @@ private:
 /// Extremes and sum of a field over chosen nodes.
 struct Extent {
     double low = TableWriter::empty, high = TableWriter::empty, sum = 0.0;
-    Index highest = -1;
+    Index highest = -1, count = 0;
 
     void add(Index node, double value) {
         low = highest < 0 ? value : std::min(low, value);
         if (highest < 0 || value > high) high = value, highest = node;
-        sum += value;
+        sum += value, ++count;
     }
 };
+
+/// What only solids have: where free water is alone it says nothing.
+bool is_of_solids(const std::string& field) {
+    for (const char* name : {"damage", "cohesion", "stress", "effective_stress"})
+        if (field.rfind(name, 0) == 0) return true;
+    return false;
+}
 
 class Reduction final : public InsituWork {
 public:
@@ -85,6 +92,10 @@ public:
     void sample(const Frame& frame, Index) override {
         const std::vector<Scalar> values = scalars(frame, fields_);
         const Scalar depth = scalar(frame.nodes, "depth", "the grid");
+        const Field* const water = frame.node("water_depth");
+        const auto has_solids = [&](Index k) {  // depth is that of both, a sum
+            return water == nullptr || depth[k] - water->data[k] > 1e-9 * depth[k];
+        };
         std::vector<Extent> extents(values.size());
         double depths = 0.0;
         Index nodes = 0;
@@ -92,11 +103,12 @@ public:
             if (!(depth[k] > above_)) continue;
             ++nodes;
             depths += depth[k];
-            for (std::size_t f = 0; f < values.size(); ++f) extents[f].add(k, values[f][k]);
+            for (std::size_t f = 0; f < values.size(); ++f)
+                if (!is_of_solids(values[f].name) || has_solids(k)) extents[f].add(k, values[f][k]);
         }
         const double pixel = frame.grid.cell * frame.grid.cell;
         std::vector<double> row = {frame.status.time, pixel * static_cast<double>(nodes), pixel * depths};
-        for (const Extent& extent : extents) add_cells(row, extent, nodes, frame.grid);
+        for (const Extent& extent : extents) add_cells(row, extent, frame.grid);
         TableWriter& table = table_.with_columns(columns(values));
         table.add(row);
         table.flush();
@@ -115,12 +127,12 @@ private:
         return result;
     }
 
-    static void add_cells(std::vector<double>& row, const Extent& extent, Index nodes, const GridGeometry& grid) {
+    static void add_cells(std::vector<double>& row, const Extent& extent, const GridGeometry& grid) {
         const double none = TableWriter::empty;
-        const bool any = nodes > 0;
+        const bool any = extent.count > 0;
         row.insert(row.end(), {extent.low, extent.high, any ? grid.x(extent.highest % grid.nx) : none,
                                any ? grid.y(extent.highest / grid.nx) : none,
-                               any ? extent.sum / static_cast<double>(nodes) : none});
+                               any ? extent.sum / static_cast<double>(extent.count) : none});
     }
 
     LateTable table_;

@@ -20,9 +20,12 @@ std::size_t terminal_width() {
     return 100;
 }
 
+/// Of the mass by its `density`, and of free water beside it by its own [m3].
+double volume_of(const Status& now, double density) { return (now.mass - now.water) / density + now.water_volume; }
+
 std::string state_text(const Status& now, double density) {
     return fmt::format("dt {:.2g} s  {} particles  {:.4g} m3  max {:.3g} m/s", now.dt, now.particles,
-                       now.mass / density, now.max_speed);
+                       volume_of(now, density), now.max_speed);
 }
 
 /// JSON has no infinity and no NaN.
@@ -120,7 +123,7 @@ std::string Progress::json(const Status& now, double wall) const {
         "{}, "
         "\"volume\": {}, \"max_speed\": {}, \"wall\": {}, \"eta\": {}}}",
         json_number(now.time), json_number(end_time_), json_number(share), now.step, json_number(now.dt), now.particles,
-        json_number(now.mass / density_), json_number(now.max_speed), json_number(wall),
+        json_number(volume_of(now, density_)), json_number(now.max_speed), json_number(wall),
         json_number(remaining(now, wall)));
 }
 

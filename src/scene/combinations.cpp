@@ -69,6 +69,26 @@ bool holds(const CaseFile& file, const Values& values, const std::string& key) {
 Values is(const char* key, std::vector<std::string> words) { return {key, Are::words, std::move(words)}; }
 Values is_not(const char* key, std::vector<std::string> words) { return {key, Are::others, std::move(words)}; }
 
+/// Keys of the depth-averaged flow's scheme that structured columns have no use for.
+void add_scheme_of_structure(std::vector<Combination>& table) {
+    const Values structure = is_not("material.structure.law", {"none"});
+    table.push_back({{"scheme.cfl", Are::given},
+                     {structure},
+                     "expected none: structured columns take their own steps",
+                     "remove it, and give material.structure.cfl"});
+    const auto unused = [&](Values refused, const std::string& expected) {
+        table.push_back({std::move(refused), {structure}, "expected " + expected, "remove it"});
+    };
+    unused(is_not("scheme.transfer", {"tpic"}), "\"tpic\", the only one that structured columns have");
+    unused(is("scheme.precision", {"float"}), "\"double\", the only one that structured columns have");
+    unused({"scheme.lateral_drag", Are::above_zero}, "0: structured columns have no such drag");
+    unused({"scheme.merge", Are::on}, "false: structured columns are never merged");
+    unused({"scheme.wave_shift", Are::above_zero}, "0: structured columns stay where their velocities take them");
+    unused({"scheme.mass_fit", Are::on}, "false: structured columns have their own mass");
+    unused({"scheme.strain_rate_floor", Are::given}, "none: structured columns have no rheology");
+    unused({"scheme.stress_cap", Are::given}, "none: structured columns have no rheology");
+}
+
 /// What structured columns do not know of.
 void add_structure(std::vector<Combination>& table) {
     const Values structure = is_not("material.structure.law", {"none"});
@@ -348,6 +368,7 @@ const std::vector<Combination>& combinations() {
         std::vector<Combination> table;
         add_schemes(table);
         add_structure(table);
+        add_scheme_of_structure(table);
         add_water(table);
         add_erodible_bed(table);
         add_deposits(table);
@@ -362,6 +383,13 @@ const std::vector<Combination>& combinations() {
         return table;
     }();
     return all;
+}
+
+bool refused_if_given(const CaseFile& file, const std::string& key) {
+    return std::any_of(combinations().begin(), combinations().end(), [&](const Combination& row) {
+        return row.refused.key == key && (row.refused.are == Are::given || row.refused.hold(file)) &&
+               std::any_of(row.with.begin(), row.with.end(), [&](const Values& values) { return values.hold(file); });
+    });
 }
 
 std::string describe_combinations() {

@@ -42,6 +42,9 @@ struct Combination {
 
 const std::vector<Combination>& combinations();
 
+/// Whether a key's default would be refused if it were given: it has no effect then.
+bool refused_if_given(const CaseFile& file, const std::string& key);
+
 /// The table for people.
 std::string describe_combinations();
 /// The same as a section of a page of Markdown.

@@ -319,7 +319,8 @@ void add_run(Table& table) {
                       "mass",           "volume",           "pressure",      "id",
                       "peak_depth",     "peak_speed",       "peak_pressure", "peak_dynamic_pressure",
                       "arrival_time",   "damage",           "cohesion",      "water_depth",
-                      "water_velocity", "bed_change",       "eroded_depth",  "deposited_depth"};
+                      "water_velocity", "water_speed",      "bed_change",    "eroded_depth",
+                      "deposited_depth"};
     fields.fallback = std::vector<std::string>{};
     table.push_back(fields);
     table.push_back(choice("output.film", {"none", "mp4", "gif"}, "none",

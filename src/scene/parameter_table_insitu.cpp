@@ -34,6 +34,11 @@ std::vector<std::string> scalar_names() {
             "effective_stress_xy",
             "damage",
             "cohesion",
+            "water_depth",
+            "water_speed",
+            "water_velocity_x",
+            "water_velocity_y",
+            "water_velocity_z",
             "id"};
 }
 

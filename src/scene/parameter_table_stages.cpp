@@ -102,9 +102,11 @@ void add_barriers(Table& table) {
     table.push_back(
         absent(instead(number("barrier.top", "m", any_number, "elevation of a level top"), "barrier.height"),
                "height or height_field is needed"));
-    table.push_back(number("barrier.friction", "1", between(0.0, 10.0), 0.0,
-                           "Coulomb's friction coefficient between points in space and the barrier"));
-    table.push_back(flag("barrier.stuck", false, "points in space do not slide along the barrier"));
+    table.push_back(
+        number("barrier.friction", "1", between(0.0, 10.0), 0.0,
+               "Coulomb's friction coefficient between points in space, or structured columns, and the barrier"));
+    table.push_back(
+        flag("barrier.stuck", false, "points in space and structured columns do not slide along the barrier"));
     Parameter windows =
         make("barrier.windows", Kind::numbers, "s",
              "times over which forces of points in space are averaged: one to eight, ascending, up to 10 s; the report "

@@ -34,6 +34,9 @@ const std::vector<RemarkRow>& remark_table() {
         {Remark::release_depth, "depth of the release", -none, 100.0,
          "found a depth of up to {value:.4g} m; expected {high:g} m at most; check the unit of the depth, or the "
          "surface"},
+        {Remark::rain, "rain", -none, 1e-4,
+         "found up to {value:.3g} m/s; expected {high:g} m/s at most, which is 360 mm in an hour; check whether it was "
+         "given in mm/h"},
         {Remark::few_particles, "few particles", 100.0, none,
          "found {value:.0f} particles in all; expected {low:g} or more, since fewer do not resolve a flow; give a "
          "smaller "

@@ -17,6 +17,7 @@ enum class Remark {
     kind_range,
     release_slope,
     release_depth,
+    rain,
     few_particles,
     depth_without_data,
     zero_margin,

@@ -106,11 +106,16 @@ private:
     /// That the run will have this field where it is looked for.
     void check_field(const std::string& key, const std::string& field, bool of_particles) {
         const bool stress = starts_with(field, "stress") || starts_with(field, "effective_stress");
-        const bool nodes_only = starts_with(field, "peak_") || field == "arrival_time";
+        const bool water = starts_with(field, "water_");
+        const bool nodes_only = starts_with(field, "peak_") || field == "arrival_time" || water;
         const bool particles_only = field == "mass" || field == "volume" || field == "id";
         const std::string found = fmt::format("found \"{}\"", field);
         const bool structured = field == "damage" || field == "cohesion";
-        if (structured && !scene_.structure)
+        if (water && !scene_.water)
+            problems_.add(case_.place(key), found + " in a case without free water",
+                          "expected a field of this case, since water.model = \"none\"",
+                          "choose another field, or set water.model = \"free\"");
+        else if (structured && !scene_.structure)
             problems_.add(case_.place(key), found + " in a case without structure",
                           "expected a field of this case, since material.structure.law = \"none\"",
                           "choose another field, or give the mass a structure");

@@ -84,7 +84,9 @@ void remark_on_kind(const CaseFile& file, const std::string& key, const std::str
 /// Of all zones as well; rasters are not looked at.
 void remark_on_kind(const CaseFile& file, Scene& scene) {
     if (!file.has("case.kind")) return;
-    for (const char* key : {"material.density", "material.rheology.yield_stress", "material.rheology.viscosity"})
+    // The kind's density is that of what flows: of grains and water beside them together.
+    if (file.word("water.model") == "none") remark_on_kind(file, "material.density", "material.density", scene);
+    for (const char* key : {"material.rheology.yield_stress", "material.rheology.viscosity"})
         remark_on_kind(file, key, key, scene);
     for (const std::string name : {"mu", "friction_angle_deg", "xi", "manning_n", "yield_stress", "viscosity"}) {
         const std::string of_bed = "material.bed." + name;

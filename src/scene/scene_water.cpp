@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "scene/remarks.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
@@ -93,9 +94,26 @@ WaterExchange exchange_of(const CaseFile& file, double viscosity, const Scene& s
     return exchange;
 }
 
+/// Viscosity that no run gets to the end with.
+void refuse_endless_steps(const CaseFile& file, const WaterPhase& water, const Scene& scene, Problems& problems) {
+    constexpr double kMost = 1e9;
+    if (!(water.viscosity.kinematic > 0.0)) return;
+    const double step = viscous_step(water.viscosity, scene.bed.geometry.cell), steps = scene.end / step;
+    if (steps <= kMost) return;
+    problems.add(file.place("water.viscous"),
+                 fmt::format("found a viscosity of {:.3g} Pa s, which needs steps of {:.2g} s and {:.2g} of them",
+                             water.viscosity.kinematic * water.exchange.material.fluid_density, step, steps),
+                 fmt::format("expected {:.0e} steps at most", kMost),
+                 "check mud_alpha, mud_beta and mud_concentration, or give a larger grid.cell");
+}
+
 /// Grains and ground that free water cannot be beside; scene/combinations.cpp has the rest.
 void refuse_others(const CaseFile& file, const TwoPhaseMaterial& m, const Scene& scene, Problems& problems) {
-    if (m.solid_density <= m.fluid_density)
+    if (!file.given("material.density"))
+        problems.add(file.place("material.density"), "not given with water.model = \"free\"",
+                     "expected the density of what the water flows beside, grains with their confined water",
+                     "give it, of loose rock about 2650");
+    else if (m.solid_density <= m.fluid_density)
         problems.add(file.place("material.density"),
                      fmt::format("found {:.6g} kg/m3, so that grains have {:.6g}", scene.density, m.solid_density),
                      fmt::format("expected grains denser than water.density = {:.6g}", m.fluid_density),
@@ -105,22 +123,55 @@ void refuse_others(const CaseFile& file, const TwoPhaseMaterial& m, const Scene&
                      "expected ground everywhere", "give a terrain.window without nodata, or fill the elevation model");
 }
 
+/// "1290 m floods 1.2e+06 m2 of the ground, 3.4e+06 m3, 12 m deep at most".
+void remark_on_lake(const CaseFile& file, Scene& scene) {
+    const double level = number(file, "level");
+    const GridGeometry& g = scene.bed.geometry;
+    double lowest = INFINITY, depths = 0.0, nodes = 0.0, edges = 0.0;
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) {
+            const double depth = level - scene.bed.at(i, j);
+            lowest = std::min(lowest, scene.bed.at(i, j));
+            if (!(depth > 0.0)) continue;
+            depths += depth, nodes += 1.0;
+            edges += (i == 0 || i == g.nx - 1 ? 1.0 : 0.0) + (j == 0 || j == g.ny - 1 ? 1.0 : 0.0);
+        }
+    const std::string place = file.place("water.level");
+    if (!(nodes > 0.0)) {
+        scene.log.push_back(
+            fmt::format("{}: found {:.6g} m, which floods nothing; expected a level above the lowest "
+                        "ground, {:.6g} m; correct it, or remove it",
+                        place, level, lowest));
+        return;
+    }
+    std::string text = fmt::format("{}: {:.6g} m floods {:.4g} m2 of the ground with {:.4g} m3, {:.4g} m deep at most",
+                                   place, level, nodes * g.cell * g.cell, depths * g.cell * g.cell, level - lowest);
+    if (edges > 0.0 && scene.sides == Sides::open)
+        text +=
+            fmt::format("; it meets open sides over {:.4g} m, beyond which it is held at that level", edges * g.cell);
+    scene.log.push_back(text);
+}
+
 }  // namespace
 
 std::optional<WaterPhase> read_water(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems) {
     if (file.word("water.model") == "none") return {};
     WaterPhase water;
     water.share = number(file, "share");
-    if (file.given("water.level")) water.level = number(file, "level");
+    if (file.given("water.level")) water.level = number(file, "level"), remark_on_lake(file, scene);
     for (const auto& [key, to] : {std::pair<const char*, Raster*>{"water.rain", &water.rain},
                                   std::pair<const char*, Raster*>{"water.infiltration", &water.infiltration}})
         problems.attempt(file.place(key), [&, key = key, to = to] { *to = rate_on_nodes(file, reader, key, scene); });
+    if (!water.rain.values.empty())
+        remark_on(scene.log, Remark::rain, file.place("water.rain"),
+                  {*std::max_element(water.rain.values.begin(), water.rain.values.end())});
     water.friction = friction_of(file);
     const double viscosity = viscosity_of(file, scene);
     water.exchange = exchange_of(file, viscosity, scene);
     if (file.word("water.viscous") != "none")
         water.viscosity = {viscosity / water.exchange.material.fluid_density, number(file, "bed_shear"),
                            file.flag("water.solid_gradient"), number(file, "profile_factor")};
+    refuse_endless_steps(file, water, scene, problems);
     refuse_others(file, water.exchange.material, scene, problems);
     return water;
 }

@@ -148,6 +148,7 @@ template <Curvature kCurvature, class Real>
 template <class Real>
 struct GrainForceOf {
     FlatOf<Real> acceleration;  ///< [m/s^2]
+    FlatOf<Real> beyond;        ///< of it, by earth pressure that is not hydrostatic [m/s^2]
     Real own_weight;            ///< of grains on the bed, over that at rest [1]
     Real share;                 ///< of grains [1]
     /// The same of all that is at the node.
@@ -174,7 +175,8 @@ template <class Real>
     const Real xx = grains.k.xx - s, yy = grains.k.yy - s, xy = grains.k.xy;
     const FlatOf<Real> beyond{xx * by.thrust.x + xy * by.thrust.y + half * grains.change.x,
                               xy * by.thrust.x + yy * by.thrust.y + half * grains.change.y};
-    return {(Real{} - bears) * (s * by.drive + beyond) + s * viscous_acceleration(flow, k, Real{}), by.weight, s};
+    return {(Real{} - bears) * (s * by.drive + beyond) + s * viscous_acceleration(flow, k, Real{}),
+            (Real{} - bears) * beyond, by.weight, s};
 }
 
 [[gnu::always_inline]] inline double front_at(const Flow& flow, Index k, double) { return at_front(flow, k); }

@@ -248,7 +248,7 @@ void StructuredFlow::accumulate() {
     for (const StructuredTally& tile : body_.tallies) {
         status_.impulse.add(tile.impulse);
         status_.friction += tile.friction, status_.obstacle_work += tile.obstacles, status_.dragged += tile.drag;
-        status_.outrun += tile.outrun;
+        status_.squeezed += tile.squeezed, status_.outrun += tile.outrun;
     }
     update_totals();
     if (all.bad >= 0)

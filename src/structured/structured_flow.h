@@ -78,6 +78,7 @@ struct StructuredImpulses {
 struct StructuredTally {
     StructuredImpulses impulse;
     double friction = 0.0, obstacles = 0.0;  ///< lost to them
+    double squeezed = 0.0;                   ///< lost inside grains
     double drag = 0.0;                       ///< lost by both to the drag of free water
     Index outrun = 0;                        ///< nodes where drag is too weak for xi (WaterViscosity)
     double kinetic = 0.0, potential = 0.0;   ///< after the step; of the places before it
@@ -98,6 +99,7 @@ struct StructuredStatus : Clock {
     double bed_kinetic = 0.0, potential = 0.0;   ///< of the nodes, along the bed and above z = 0 [J]
     double stored = 0.0;                         ///< elastic, of the structure in the plane [J]
     double friction = 0.0, obstacle_work = 0.0;  ///< lost at the bed and to obstacles since the start [J]
+    double squeezed = 0.0;                       ///< lost by grains as they spread or are squeezed since the start [J]
     double dragged = 0.0;      ///< lost by columns and water to the drag between them since the start [J]
     Index outrun = 0;          ///< nodes and steps in which drag was too weak for xi, which was left out there
     double worked = 0.0;       ///< by the strains of the structure since the start: stored, or lost by yielding [J]

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "structured/node_water.h"
+
 namespace frana {
 
 StructuredMap::StructuredMap(const TileGrid& grid, const Vec2& centre, double footprint_depth, LazyArray<Pair> path)
@@ -27,7 +29,8 @@ Standing columns_on(const StructuredBody& body, Index k) {
     const StructuredBody::Moved& node = body.moved[k];
     const double depth = StructuredMap::depth_of(body, k);
     if (!(depth > 0.0)) return {};
-    return {depth, body.density * body.ground[k].across * depth, body.density * depth, Vec2(node.vx, node.vy)};
+    return {depth, body.density * StructuredMap::pressing(body, k) * depth, body.density * depth,
+            Vec2(node.vx, node.vy)};
 }
 
 /// With the water: velocities are those of both masses together.
@@ -94,6 +97,12 @@ Index StructuredMap::fronts(const StructuredBody& body, const WaterFlow* water, 
     return count;
 }
 
+double StructuredMap::pressing(const StructuredBody& body, Index k) {
+    if (!(body.node_mass[k] > 0.0)) return body.ground[k].across;  // parts of columns around, without a velocity
+    const double borne = body.water ? meet_water(body, k).support : 0.0;
+    return body.moved[k].normal_gravity + borne * body.ground[k].across;
+}
+
 bool StructuredMap::is_in_reach(const StructuredBody& body, Index i, Index j) {
     const Index tile = (j + kTile) / kTile * body.grid.tiles_x() + (i + kTile) / kTile;
     return body.active.in_work[static_cast<std::size_t>(tile)] != 0;
@@ -107,14 +116,16 @@ void StructuredMap::sample(const StructuredBody& body, const WaterFlow* water, c
     const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
     const double fu = u - static_cast<double>(i), fv = v - static_cast<double>(j);
     depth = 0.0;
-    Vec2 flux(0, 0);
+    double inertia = 0.0;
+    Vec2 momentum(0, 0);
     for (Index dj = 0; dj < 2; ++dj)
         for (Index di = 0; di < 2; ++di) {
             const Standing node = on_node(body, water, i + di, j + dj);
-            const double w = (di ? fu : 1.0 - fu) * (dj ? fv : 1.0 - fv) * node.depth;
-            depth += w, flux += w * node.velocity;
+            const double w = (di ? fu : 1.0 - fu) * (dj ? fv : 1.0 - fv);
+            depth += w * node.depth;
+            inertia += w * node.inertia, momentum += w * node.inertia * node.velocity;
         }
-    velocity = depth > 0.0 ? Vec2(flux / depth) : Vec2(0, 0);
+    velocity = inertia > 0.0 ? Vec2(momentum / inertia) : Vec2(0, 0);
 }
 
 void StructuredMap::serialize(Archive& archive) {

@@ -29,6 +29,9 @@ public:
         if (body.moved[k].depth > 0.0 || !body.grains || body.water) return body.moved[k].depth;
         return body.flow.nodes.column_mass[k] / (body.density * body.flow.area);
     }
+    /// Gravity by which the columns of a node press on the bed, on a bend of it too, and on the water that bears a part of
+    /// them [m/s^2].
+    static double pressing(const StructuredBody& body, Index k);
     /// Whether the node is near material: elsewhere the body's nodes are of another time.
     static bool is_in_reach(const StructuredBody& body, Index i, Index j);
     /// Depth and velocity between the nodes, bilinear; beyond them the nearest. No elevation.

@@ -20,13 +20,13 @@ double total(Double4 a) { return sum(a); }
 template <class Real>
 struct TallyOf {
     FlatOf<Real> weight, pressure, friction, obstacles;
-    Real braked{}, obstacle_work{}, kinetic{}, potential{};
+    Real braked{}, squeezed{}, obstacle_work{}, kinetic{}, potential{};
 
     void add_to(StructuredTally& t) const {
         const auto flat = [](const FlatOf<Real>& a) { return Vec2(total(a.x), total(a.y)); };
         t.impulse.weight += flat(weight), t.impulse.pressure += flat(pressure);
         t.impulse.friction += flat(friction), t.impulse.obstacles += flat(obstacles);
-        t.friction += total(braked), t.obstacles += total(obstacle_work);
+        t.friction += total(braked), t.squeezed += total(squeezed), t.obstacles += total(obstacle_work);
         t.kinetic += total(kinetic), t.potential += total(potential);
     }
 };
@@ -36,7 +36,8 @@ template <class Real>
 struct DrivenOf {
     Real mass, across, depth;
     FlatOf<Real> before, driven;
-    Real law_depth;  ///< that friction sees: without its 2-cell wave where the surface has none either [m]
+    Real law_depth;         ///< that friction sees: without its 2-cell wave where the surface has none either [m]
+    FlatOf<Real> beyond{};  ///< of what drove it, by earth pressure that is not hydrostatic [m/s]
 };
 
 /// A tile and its step.
@@ -99,6 +100,7 @@ template <class Real, class Law>
     tally.friction += node.mass * (left - free);
     // By the velocity that is left: what rests under stress and friction loses nothing.
     tally.braked += node.mass * ground.along(free - left, left);
+    if (body.grains) tally.squeezed -= (0.5 * node.mass) * ground.along(node.beyond, node.before + left);
     if (!body.obstacles.empty()) {
         tally.obstacles += node.mass * (free - node.driven);
         tally.obstacle_work += node.mass * ground.along(node.driven - free, left);
@@ -155,6 +157,7 @@ template <class Real, class Law>
         const GrainForceOf<Real> grains = force_of_grains(step, k, ground, node, 1.0);
         const FlatOf<Real> thrust = thrust_of(step, k, grains, 1.0, node.driven);
         node.driven += thrust, tally.pressure += mass * thrust;
+        node.beyond = dt * grains.beyond;
         node.across *= grains.weight();
     }
     finish(step, k, ground, node);
@@ -181,6 +184,7 @@ void move_wet(NodeStep<Law>& step, Index k) {
         const GrainForceOf<double> grains = force_of_grains(step, k, ground, node, 1.0 - met.support);
         const FlatOf<double> thrust = thrust_of(step, k, grains, 1.0 - met.support, node.driven);
         node.driven += thrust, node.across *= grains.weight();
+        node.beyond = dt * grains.beyond;
         impulse.pressure += met.mass * vec(thrust);
     }
     if (has_water(body, k)) {  // drag knows what friction holds, and friction then what drag does
@@ -242,6 +246,13 @@ void share_out(StructuredBody& body) {
     });
 }
 
+/// The weight of a node's columns on the bed over that at rest, before share_out(): grains alone feel a bend.
+double weight_on_bend(const StructuredBody& body, Index k, double mass, const Vec2& v) {
+    if (!body.curved || !body.grains) return 1.0;
+    const SteepBed<double, Curvature::full, false> bed(body.flow, k);
+    return 1.0 + body.grain_pressure[k].share / mass * (bed.gravity(body.gravity, v.x(), v.y()) / body.gravity - 1.0);
+}
+
 }  // namespace
 
 void move_nodes(StructuredBody& body, const StepTimes& times) {
@@ -275,7 +286,8 @@ void sample_nodes(StructuredBody& body) {
                     body.water ? body.bound[k].volume / (ground.open * area) : dry_depth(body, k, mass, ground.open);
                 const Vec2 v = Vec2(node.px, node.py) / mass;
                 const double support = body.water ? meet_water(body, k).support : 0.0;
-                body.moved[k] = {v.x(), v.y(), (1.0 - support) * ground.across, depth};
+                const double weight = weight_on_bend(body, k, mass, v);
+                body.moved[k] = {v.x(), v.y(), (1.0 - support) * weight * ground.across, depth};
                 tally.kinetic += 0.5 * mass * along_ground(ground, v, v);
                 tally.potential += mass * body.gravity * (ground.elevation + 0.5 * depth);
             }

@@ -12,9 +12,9 @@ void serialize_status(Archive& archive, StructuredStatus& s) {
     archive.number("points", s.points);
     archive.number("outrun", s.outrun);
     std::vector<double*> numbers = {
-        &s.time,      &s.dt,          &s.mass,          &s.mass_left,     &s.kinetic,       &s.damage, &s.max_speed,
-        &s.potential, &s.bed_kinetic, &s.stored,        &s.friction,      &s.obstacle_work, &s.worked, &s.energy_left,
-        &s.released,  &s.dragged,     &s.confined_left, &s.lost_in_holes, &s.flow_steps};
+        &s.time,      &s.dt,          &s.mass,          &s.mass_left,     &s.kinetic,       &s.damage,  &s.max_speed,
+        &s.potential, &s.bed_kinetic, &s.stored,        &s.friction,      &s.obstacle_work, &s.worked,  &s.energy_left,
+        &s.released,  &s.dragged,     &s.confined_left, &s.lost_in_holes, &s.flow_steps,    &s.squeezed};
     StructuredImpulses& i = s.impulse;
     for (Vec2* v : {&s.momentum, &s.momentum_left, &s.momentum_given, &i.weight, &i.pressure, &i.friction, &i.obstacles,
                     &i.water})

@@ -32,6 +32,12 @@ struct WaterFaces {
 
 TilePart part_of(const TileGrid& grid, Index tile);
 
+/// Whether the lake goes on beyond a cell at an open side: it stands higher than the ground there, with what is confined on
+/// it.
+inline bool meets_lake(const WaterBody& body, const WaterBlock& block, Index k) {
+    return block.surface[k] - block.depth[k] < body.level;
+}
+
 /// Fills the block; false when no water in it moves.
 bool load_block(const WaterBody& body, const WaterFields& from, const TilePart& part, WaterBlock& block);
 

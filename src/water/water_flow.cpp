@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "base/clock.h"
 #include "base/error.h"
@@ -54,6 +55,7 @@ LazyArray<double> at_nodes(const WaterScene::Function& f, const TileGrid& grid) 
 void WaterLedger::add(const WaterLedger& o, double share) {
     released += share * o.released, columns += share * o.columns;
     rained += share * o.rained, infiltrated += share * o.infiltrated, left += share * o.left;
+    entered += share * o.entered;
     momentum_left += share * o.momentum_left, momentum_infiltrated += share * o.momentum_infiltrated;
     ground += share * o.ground, walls += share * o.walls, friction += share * o.friction;
     braked += share * o.braked, sheared += share * o.sheared, energy_out += share * o.energy_out;
@@ -77,6 +79,7 @@ WaterBody::WaterBody(const WaterScene& scene)
       theta(scene.theta),
       film(scene.film),
       datum(learn_bed(scene, grid, bed)),
+      level(scene.level ? *scene.level - datum : -std::numeric_limits<double>::max()),
       steep(scene.steep) {
     if (scene.confined) confined = at_nodes(scene.confined, grid);
     if (viscosity.kinematic > 0.0 && viscosity.solid_gradient)
@@ -115,7 +118,7 @@ void WaterFlow::place(const WaterScene& scene) {
     for (Index j = 0; j < g.ny; ++j)
         for (Index i = 0; i < g.nx; ++i) {
             const Index k = grid.at(i, j);
-            if (body_.rain && body_.rain[k] > 0.0)
+            if ((body_.rain && body_.rain[k] > 0.0) || body_.meets_lake(i, j))
                 rained_[static_cast<std::size_t>((j / kTile + 1) * grid.tiles_x() + i / kTile + 1)] = 1;
             if (!scene.start) continue;
             const WaterState s = scene.start(g.x(i), g.y(j));
@@ -165,14 +168,11 @@ void WaterFlow::list_tiles() {
 }
 
 /// What runs at the signal's speed, and falls by half of g at most (g_z times the slope), passes part of a cell.
-/// Viscosity is explicit: a thin cell beside deep ones has four faces twice as thick as itself, two with twice the
-/// viscosity, so that its rates are 24 nu / cell^2 at most, half that in water of one depth.
 double WaterFlow::longest_step() const {
-    constexpr double kViscous = 0.9 * 2.0 / 24.0;
     if (body_.work.empty()) return 0.0;
-    const double reach = cfl_ * body_.grid.cell(), nu = body_.viscosity.kinematic;
+    const double reach = cfl_ * body_.grid.cell();
     double dt = 2.0 * reach / (signal_ + std::sqrt(signal_ * signal_ + body_.gravity * reach));
-    if (nu > 0.0) dt = std::min(dt, kViscous * body_.grid.cell() * body_.grid.cell() / nu);
+    if (body_.viscosity.kinematic > 0.0) dt = std::min(dt, viscous_step(body_.viscosity, body_.grid.cell()));
     return dt;
 }
 
@@ -269,7 +269,7 @@ double WaterFlow::volume_faster_than(double speed) const {
 
 double WaterFlow::volume_residual() const {
     const WaterLedger& l = status_.ledger;
-    return status_.volume + l.left + l.infiltrated - l.rained - l.released - status_.volume_given;
+    return status_.volume + l.left + l.infiltrated - l.rained - l.entered - l.released - status_.volume_given;
 }
 
 Vec2 WaterFlow::momentum_residual() const {

@@ -3,6 +3,7 @@
 // volume scheme of second order that keeps lakes at rest and depths positive. One cell around each node.
 #include <array>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "base/clock.h"
@@ -15,7 +16,7 @@
 
 namespace frana {
 
-/// What a side of the grid does: stops the water, or lets it go; none comes in.
+/// What a side of the grid does: stops the water, or lets it go; none comes in but of a lake (WaterScene::level).
 enum class WaterSide { wall, open };
 
 /// Depth [m] and velocity on the map [m/s] at the start, means over a cell.
@@ -37,6 +38,7 @@ struct WaterScene {
     Function rain = {};                                        ///< [m/s]; none without
     Function infiltration = {};                                ///< what the ground takes at most [m/s]
     std::array<WaterSide, 4> sides{};                          ///< at low x, high x, low y, high y
+    std::optional<double> level;  ///< of a lake that goes on beyond open sides, where the ground there is lower [m]
     WaterFriction friction;
     WaterViscosity viscosity;
     double gravity = constants::kGravity;  ///< [m/s^2]
@@ -54,14 +56,16 @@ struct WaterScene {
 /// Sums over density since the start, or of one step: volumes [m^3], momentum [m^4/s].
 struct WaterLedger {
     double rained = 0.0, infiltrated = 0.0, left = 0.0;
-    Vec2 momentum_left{0, 0}, momentum_infiltrated{0, 0};  ///< carried out
+    double entered = 0.0;                                  ///< from a lake beyond open sides
+    Vec2 momentum_left{0, 0}, momentum_infiltrated{0, 0};  ///< carried out, less what entered brought
     double released = 0.0;                                 ///< given by columns
     Vec2 columns{0, 0};                                    ///< of what columns released, and their drag
     Vec2 ground{0, 0};                                     ///< push of bed and confined mass
     Vec2 walls{0, 0};                                      ///< push of walls, and of the water beyond open sides
     Vec2 friction{0, 0};                                   ///< at the bed, and what films lose that stop
     /// Energy over density [m^5/s^2]: lost at the bed, by films that stop and in speeding up rain; lost to viscosity inside;
-    /// gone with the water through open sides and into the ground, less what rain brought, heights above the datum.
+    /// gone with the water through open sides and into the ground, less what rain and entering water brought, heights above
+    /// the datum.
     double braked = 0.0, sheared = 0.0, energy_out = 0.0;
     void add(const WaterLedger& o, double share = 1.0);
 };
@@ -94,6 +98,12 @@ struct WaterFields {
 /// All that the kernels share.
 struct WaterBody {
     explicit WaterBody(const WaterScene& scene);
+    /// Whether a lake goes on beyond the cell: it is at an open side, and its ground lower than the lake.
+    bool meets_lake(Index i, Index j) const {
+        const auto open = [&](std::size_t side, bool here) { return here && sides[side] == WaterSide::open; };
+        return bed[grid.at(i, j)] < level &&
+               (open(0, i == 0) || open(1, i == grid.nx() - 1) || open(2, j == 0) || open(3, j == grid.ny() - 1));
+    }
     TileGrid grid;
     WaterFields now, half;                 ///< the state; after the first stage of a step
     LazyArray<double> driven_x, driven_y;  ///< discharge after the first stage, before friction [m^2/s]
@@ -111,6 +121,7 @@ struct WaterBody {
     WaterViscosity viscosity;
     double gravity, theta, film;
     double datum;  ///< lets water high above the sea keep its digits [m]
+    double level;  ///< above it, of the lake beyond open sides; far below all ground without one [m]
     bool steep;
 };
 
@@ -156,7 +167,7 @@ public:
     WaterState at(Index i, Index j) const;
     double surface(Index i, Index j) const;
     std::vector<PhaseTime> timings() const { return timed_.times(); }
-    /// Present + left + infiltrated - rained - given [m^3], and momentum the same way [m^4/s]: round-off
+    /// Present + left + infiltrated - rained - entered - given [m^3], and momentum the same way [m^4/s]: round-off
     double volume_residual() const;
     Vec2 momentum_residual() const;
 
@@ -173,7 +184,7 @@ private:
     StepClock timed_;
     WaterStatus status_;
     std::vector<std::uint8_t> wanted_;  ///< per tile: on the next list
-    std::vector<std::uint8_t> rained_;  ///< per tile: rain may fall on it
+    std::vector<std::uint8_t> rained_;  ///< per tile: rain may fall on it, or a lake beyond a side come in
     std::vector<Index> next_;
     double cfl_;
     double signal_ = 0.0;  ///< largest speed of water and waves [m/s]

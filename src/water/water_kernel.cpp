@@ -69,9 +69,11 @@ void find_fluxes(const WaterBlock& block, const double* along, const double* acr
     }
 }
 
-/// A face at a side of the grid lets nothing in, and through a wall nothing out.
-void close(WaterFaces& faces, Index k, WaterSide side, double outward) {
-    if (side == WaterSide::open && outward * faces.mass[k] > 0.0) return;
+/// A face at a side of the grid lets nothing in but of a lake beyond it, and through a wall nothing out. `inside`: the last
+/// cell.
+void close(const WaterBody& body, const WaterBlock& block, WaterFaces& faces, Index k, Index inside, WaterSide side,
+           double outward) {
+    if (side == WaterSide::open && (outward * faces.mass[k] > 0.0 || meets_lake(body, block, inside))) return;
     faces.mass[k] = faces.along[k] = faces.across[k] = 0.0;
 }
 
@@ -100,16 +102,18 @@ void find_faces(const WaterBody& body, const TilePart& part, Stage& s) {
         s.across_x.depth[b * kRow + 21] = s.across_x.surface[b * kRow + 21] = 0.0;
         s.across_x.along[b * kRow + 21] = s.across_x.across[b * kRow + 21] = 0.0;
         find_fluxes(block, block.u, block.v, s.across_x, b * kRow + 2, 1, s.x);
-        if (part.i0 == 0) close(s.x, b * kRow + kHalo, body.sides[0], -1.0);
-        if (last <= kHalo + kTile + 1) close(s.x, b * kRow + last, body.sides[1], 1.0);
+        const Index low = b * kRow + kHalo, high = b * kRow + last;
+        if (part.i0 == 0) close(body, block, s.x, low, low, body.sides[0], -1.0);
+        if (last <= kHalo + kTile + 1) close(body, block, s.x, high, high - 1, body.sides[1], 1.0);
     }
     for (Index b = kHalo - 2; b <= part.rows + 1; ++b)
         find_slopes(block, block.v, block.u, b * kRow + 2, kRow, body.theta, s.across_y);
     for (Index b = kHalo - 1; b <= part.rows + 1; ++b) {
         find_fluxes(block, block.v, block.u, s.across_y, b * kRow + 2, kRow, s.y);
         for (Index a = kHalo - 1; a <= kHalo + kTile; ++a) {
-            if (part.j0 == 0 && b == kHalo) close(s.y, b * kRow + a, body.sides[2], -1.0);
-            if (b == top) close(s.y, b * kRow + a, body.sides[3], 1.0);
+            const Index k = b * kRow + a;
+            if (part.j0 == 0 && b == kHalo) close(body, block, s.y, k, k, body.sides[2], -1.0);
+            if (b == top) close(body, block, s.y, k, k - kRow, body.sides[3], 1.0);
         }
     }
 }
@@ -236,16 +240,18 @@ double head_of(const WaterBody& body, const WaterBlock& block, Index k) {
     return body.gravity * block.surface[k] + 0.5 * (u * u + v * v + up * up);
 }
 
-/// One side of the grid in a tile's ledger: `k` is the face, `inside` the cell at it.
+/// One side of the grid in a tile's ledger: `k` is the face, `inside` the cell at it. What enters has the energy of the lake beyond.
 void accumulate_side(const WaterBody& body, const Stage& s, const WaterFaces& faces, const WaterSlopes& slopes, Index k,
                      Index inside, int axis, double outward, double cells, WaterLedger& ledger) {
     const double h = s.block.depth[inside] + 0.5 * outward * slopes.depth[inside];
     const double force = (outward > 0.0 ? faces.low[k] : faces.high[k]) + 0.5 * s.block.normal_gravity[inside] * h * h;
+    const double out = outward * cells * faces.mass[k];
     ledger.walls[axis] -= outward * cells * force;
-    ledger.left += outward * cells * faces.mass[k];
+    (out > 0.0 ? ledger.left : ledger.entered) += std::abs(out);
     ledger.momentum_left[axis] += outward * cells * faces.along[k];
     ledger.momentum_left[1 - axis] += outward * cells * faces.across[k];
-    ledger.energy_out += outward * cells * faces.mass[k] * head_of(body, s.block, inside);
+    const Index step = static_cast<Index>(outward) * (axis == 0 ? 1 : kRow);
+    ledger.energy_out += out * head_of(body, s.block, out > 0.0 ? inside : inside + step);
 }
 
 /// All sides of the grid that a tile touches; in cells of unit area.
@@ -407,6 +413,8 @@ std::uint16_t near_of(Index i, Index j) {
 
 /// Counts the cell at node (i, j), stored at k.
 void count(const WaterBody& body, Index k, Index i, Index j, const Water& w, WaterSums& sums) {
+    if (body.meets_lake(i, j))  // its waves come in
+        sums.signal = std::max(sums.signal, std::sqrt(body.normal_gravity[k] * (body.level - body.bed[k])));
     if (!(w.h > 0.0)) {
         if (w.h != 0.0) sums.bad = k;  // negative, or not a number
         return;

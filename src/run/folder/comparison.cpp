@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -157,18 +158,35 @@ std::string bed_change_table(const Comparison& c) {
 
 }  // namespace
 
+std::optional<Raster> solids_at_end(const std::vector<ProductRaster>& rasters) {
+    const Raster *all = raster_named(rasters, "final_depth"), *water = raster_named(rasters, "final_water_depth");
+    if (all == nullptr) return {};
+    Raster solids = *all;
+    if (water == nullptr) return solids;
+    for (std::size_t k = 0; k < solids.values.size(); ++k)
+        if (water->values[k] > 0.0) solids.values[k] = std::max(0.0, solids.values[k] - water->values[k]);
+    return solids;
+}
+
 Comparison compare_rasters(const std::vector<ProductRaster>& rasters, const Raster* bed, double limit,
                            const Survey& survey, const std::optional<Vec2>& start) {
+    const std::optional<Raster> solids = solids_at_end(rasters);
     SimulatedRun run;
     run.start = start;
     run.peak_depth = raster_named(rasters, "peak_depth");
-    run.final_depth = raster_named(rasters, "final_depth");
+    run.final_depth = solids ? &*solids : nullptr;
     run.deposited_depth = raster_named(rasters, "deposited_depth");
     run.arrival_time = raster_named(rasters, "arrival_time");
     run.bed = bed;
     run.limit = limit;
     run.bed_change = raster_named(rasters, "bed_change");
-    return compare(run, survey);
+    Comparison found = compare(run, survey);
+    if (raster_named(rasters, "final_water_depth") != nullptr)
+        found.remarks.push_back(
+            "free water counts among everything ever covered and in its arrival, a lake of water.level too; what lies "
+            "at "
+            "the end is compared without it");
+    return found;
 }
 
 Survey read_survey_files(const SurveyFiles& files, const Raster& like, std::vector<std::string>& log) {

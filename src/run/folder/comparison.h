@@ -11,6 +11,9 @@
 
 namespace frana {
 
+/// What lies at the end without free water: all but that is a deposit. Nothing without that raster [m].
+std::optional<Raster> solids_at_end(const std::vector<ProductRaster>& rasters);
+
 /// The run's rasters held against a survey that was read. `bed` is null when the terrain is not known; `start`:
 /// SimulatedRun's.
 Comparison compare_rasters(const std::vector<ProductRaster>& rasters, const Raster* bed, double limit,

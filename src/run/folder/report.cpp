@@ -102,7 +102,8 @@ std::string results(const RunRecord& r) {
     if (std::isfinite(r.flow_width))
         text += row("width of the flow, median over its length",
                     fmt::format("{:.4g} m, {:.3g} cells", r.flow_width, r.flow_width / r.grid.cell));
-    text += row("deepest at the end", fmt::format("{:.4g} m", r.final_depth));
+    text += row(r.extras.water ? "deepest at the end, without free water" : "deepest at the end",
+                fmt::format("{:.4g} m", r.final_depth));
     text += row("mean speed at the end", fmt::format("{:.3g} m/s", s.last.mean_speed));
     if (r.extras.breakage) {
         const Breakage& b = *r.extras.breakage;
@@ -144,6 +145,9 @@ std::string budgets(const RunRecord& r) {
                         : came > 0.0             ? "all mass"
                                                  : "the initial mass");
     if (came > 0.0) text += fmt::format("| of it came in [kg] | 0 | {:.8g} | | |\n", came);
+    if (r.extras.water && r.extras.water->infiltrated_mass > 0.0)
+        text +=
+            fmt::format("| of what left, into the ground [kg] | | | {:.4g} | |\n", r.extras.water->infiltrated_mass);
     const double to_bed = s.last.bed.deposited - s.last.bed.eroded;
     if (to_bed != 0.0) text += fmt::format("| became bed, less what the bed gave [kg] | | {:.8g} | | |\n", to_bed);
     for (const std::size_t axis : {0, 1})
@@ -162,10 +166,11 @@ std::string budgets(const RunRecord& r) {
     if (r.extras.water) {
         const WaterBudget& w = *r.extras.water;
         text += fmt::format(
-            "Water [m3]: {:.8g} at the start and {:.4g} of rain; now {:.8g} free and {:.8g} in columns (these released "
+            "Water [m3]: {:.8g} at the start, {:.4g} of rain and {:.4g} from a lake beyond open sides; now {:.8g} free "
+            "and {:.8g} in columns (these released "
             "{:.4g}), "
             "{:.4g} infiltrated, {:.4g} left; residual {:.1e}.\n\n",
-            w.given, w.rained, w.free, w.confined, w.released, w.infiltrated, w.left, w.residual);
+            w.given, w.rained, w.entered, w.free, w.confined, w.released, w.infiltrated, w.left, w.residual);
     }
     const Status::In3d& points = s.last.in_3d;
     if (points.friction != 0.0 || points.walls != 0.0 || points.material != 0.0 || points.numerical != 0.0)
@@ -247,6 +252,20 @@ std::vector<std::size_t> shown_barriers(const RunRecord& r) {
     return shown;
 }
 
+/// Structured columns meet barriers as walls whose pushes are known together only.
+std::string barriers_beside_structure(const RunRecord& r) {
+    std::string text = "## Barriers\n\n";
+    for (const BarrierSummary& b : r.barriers) text += fmt::format("- {}\n", b.name);
+    const Breakage& of = *r.extras.breakage;
+    return text +
+           fmt::format(
+               "\nStructured columns meet a barrier as an upright box of any height, which pushes and rubs. Since the "
+               "start all barriers, with the walls along closed sides, took an impulse of {:.4g} N s in x and {:.4g} N "
+               "s "
+               "in y. What each of them took, contact times and run-up are not measured.\n\n",
+               of.pushed[0], of.pushed[1]);
+}
+
 std::string barrier_row(const BarrierSummary& b) {
     const bool reached = std::isfinite(b.run_up);
     const std::string run_up = reached ? fmt::format("{:.5g} m", b.run_up) : "-";
@@ -286,6 +305,7 @@ std::string mean_forces(const RunRecord& r, const std::vector<std::size_t>& show
 
 std::string barriers(const RunRecord& r) {
     if (r.barriers.empty()) return "";
+    if (r.extras.breakage) return barriers_beside_structure(r);
     std::string text =
         "## Barriers\n\n| Barrier | First contact | Impulse x, y, z | Run-up to elevation | Over it |\n"
         "|---|---|---|---|---|\n";
@@ -390,7 +410,10 @@ std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_d
                     s.last.particles, s.wall_seconds > 0.0 ? 1e-6 * s.particle_steps / s.wall_seconds : 0.0,
                     clock_text(s.wall_seconds), 100.0 * s.output_share());
     const double came = mass_came_in(s.first, s.last);
-    const std::string later = came > 0.0 ? fmt::format("; {:.6g} m3 came in later", came / r.density) : "";
+    const std::string later =
+        !(came > 0.0)    ? ""
+        : r.extras.water ? fmt::format("; {:.6g} m3 of water came in", r.extras.water->rained + r.extras.water->entered)
+                         : fmt::format("; {:.6g} m3 came in later", came / r.density);
     text += fmt::format("  released   {:.6g} m3{}; {} left the domain; mass error {:.1e}\n", r.release_volume, later,
                         left_text(r), budget(s.first, s.last).mass_error);
     text += fmt::format("  deepest    {:.4g} m, fastest {:.4g} m/s, front at {:.5g} m\n", s.extremes.max_depth,

@@ -85,9 +85,9 @@ void note_results(RunRecord& record, const std::vector<ProductRaster>& rasters) 
     record.peak_speed = largest(rasters, "peak_speed");
     record.peak_pressure = largest(rasters, "peak_pressure");
     record.peak_dynamic_pressure = largest(rasters, "peak_dynamic_pressure");
-    if (const ProductRaster* last = find_product(rasters, "final_depth")) {
+    if (const std::optional<Raster> solids = solids_at_end(rasters)) {
         const ProductRaster* bed = find_product(rasters, "deposited_depth");
-        for (const double depth : with_deposit(last->raster, bed ? &bed->raster : nullptr).values)
+        for (const double depth : with_deposit(*solids, bed ? &bed->raster : nullptr).values)
             if (depth > record.final_depth) record.final_depth = depth;
     }
 }

@@ -295,7 +295,8 @@ Json breakage_json(const Breakage& b) {
             {"neighbour_pairs", b.pairs},
             {"torn_pairs", b.torn},
             {"torn_without_damage", b.numerical},
-            {"sub_cycling", b.sub_cycling}};
+            {"sub_cycling", b.sub_cycling},
+            {"barriers_and_walls", {{"impulse", {{"unit", "kg m/s"}, {"x", b.pushed[0]}, {"y", b.pushed[1]}}}}}};
 }
 
 Json apart_json(const PointsApart& a) {
@@ -313,10 +314,11 @@ Json water_json(const WaterBudget& w) {
             {"confined", w.confined},
             {"released", w.released},
             {"rained", w.rained},
+            {"entered", w.entered},
             {"infiltrated", w.infiltrated},
             {"left_domain", w.left},
             {"residual", w.residual},
-            {"relative_error", w.residual / std::max(w.given + w.rained, 1e-300)},
+            {"relative_error", w.residual / std::max(w.given + w.rained + w.entered, 1e-300)},
             {"energy_lost", {{"unit", "J"}, {"bed", w.bed}, {"viscosity", w.viscosity}, {"drag", w.drag}}},
             {"column_steps_per_water_step", w.steps}};
 }
@@ -365,7 +367,10 @@ std::string run_json(const RunRecord& record) {
                  {"files", record.files}};
     if (record.extras.points_apart) json["points_apart"] = apart_json(*record.extras.points_apart);
     if (record.extras.breakage) json["structure"] = breakage_json(*record.extras.breakage);
-    if (record.extras.water) json["budgets"]["water"] = water_json(*record.extras.water);
+    if (record.extras.water) {
+        json["budgets"]["water"] = water_json(*record.extras.water);
+        json["budgets"]["mass"]["infiltrated"] = record.extras.water->infiltrated_mass;
+    }
     if (record.extras.inflow) json["budgets"]["inflow"] = inflow_json(*record.extras.inflow);
     if (!record.extras.late.empty()) json["late_releases"] = late_json(record.extras.late);
     if (s.last.bed.initial > 0.0 || s.last.bed.deposited > 0.0) json["budgets"]["bed"] = bed_json(s);

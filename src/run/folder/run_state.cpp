@@ -160,6 +160,18 @@ UserError no_frames(const fs::path& run_dir, const char* file) {
                     run_dir.string(), file));
 }
 
+/// Volume of free water in the frame of that time [m3].
+double free_water_of(const fs::path& run_dir, double time) {
+    if (!fs::exists(run_dir / "grid.pvd")) return 0.0;
+    const LoadedFrame frame = read_frame(run_dir, nearest_frame(run_dir, time), {"water_depth"});
+    const auto depth = frame.nodes.find("water_depth");
+    if (depth == frame.nodes.end()) return 0.0;
+    double sum = 0.0;
+    for (const double h : depth->second)
+        if (h > 0.0) sum += h;
+    return sum * frame.grid.cell * frame.grid.cell;
+}
+
 RunState state_of_vtk(const fs::path& run_dir, double time) {
     RunState state;
     const fs::path list = run_dir / "particles.pvd";
@@ -170,6 +182,7 @@ RunState state_of_vtk(const fs::path& run_dir, double time) {
     state.time = particles.time;
     state.columns = columns_of(particles, list);
     state.bed = vtk_bed(run_dir);
+    state.free_water = free_water_of(run_dir, state.time);
     take_slopes(state.columns, state.bed);
     follow_climb(state.columns, component(particles, "velocity", 2));
     state.frames = list.string();

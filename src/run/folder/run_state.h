@@ -9,10 +9,11 @@
 namespace frana {
 
 struct RunState {
-    double time = 0.0;    ///< of the frame that was taken [s]
-    FlowColumns columns;  ///< the run's particles, with the slopes of `bed`
-    Raster bed;           ///< with the run's coordinate system as far as it is known
-    std::string frames;   ///< the file that lists the frames
+    double time = 0.0;        ///< of the frame that was taken [s]
+    FlowColumns columns;      ///< the run's particles, with the slopes of `bed`
+    Raster bed;               ///< with the run's coordinate system as far as it is known
+    std::string frames;       ///< the file that lists the frames
+    double free_water = 0.0;  ///< beside the columns, in VTK frames; nothing of it is in these [m3]
 };
 
 /// Position of the frame nearest to `time` [s]. Throws UserError, which names --time and the file that lists the frames,
