@@ -206,7 +206,8 @@ Draft draw(Model model, std::uint64_t seed, std::uint64_t n) {
     draw_other(dice, draft);
     Dice friction(salted(seed, kFriction), n);
     if (friction.chance(0.2)) draw_friction(friction, draft);
-    draft.keys["time.end"] = "1.0e6";
+    // No scene gets there. Mud as thick as is drawn has steps too short for more (scene_water.cpp).
+    draft.keys["time.end"] = draft.has("water.mud_alpha") ? "1.0e4" : "1.0e6";
     draft.keys["output.formats"] = "[\"vtk\"]";
     return draft;
 }
