@@ -216,8 +216,8 @@ void StructuredRun::remark_on_low_barriers(std::vector<std::string>& remarks) co
         const Obstacle box = box_of(barrier);
         for (Index j = 0; j < g.ny; ++j)
             for (Index i = 0; i < g.nx; ++i) {
-                const Vec2 place(g.x(i), g.y(j)), beside = place.cwiseMax(box.low).cwiseMin(box.high);
-                if ((place - beside).cwiseAbs().maxCoeff() > g.cell) continue;
+                const Vec2 place(g.x(i), g.y(j)), nearest = place.cwiseMax(box.low).cwiseMin(box.high);
+                if ((place - nearest).cwiseAbs().maxCoeff() > g.cell) continue;
                 const double depth = map_.peak(flow().body().grid.at(i, j)).depth;
                 const double height = barrier.top ? *barrier.top - bed_.at(i, j) : barrier.height;
                 if (depth > 0.0) over = std::max(over, depth - height);

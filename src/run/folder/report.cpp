@@ -253,7 +253,7 @@ std::vector<std::size_t> shown_barriers(const RunRecord& r) {
 }
 
 /// Structured columns meet barriers as walls whose pushes are known together only.
-std::string barriers_beside_structure(const RunRecord& r) {
+std::string barriers_of_structure(const RunRecord& r) {
     std::string text = "## Barriers\n\n";
     for (const BarrierSummary& b : r.barriers) text += fmt::format("- {}\n", b.name);
     const Breakage& of = *r.extras.breakage;
@@ -305,7 +305,7 @@ std::string mean_forces(const RunRecord& r, const std::vector<std::size_t>& show
 
 std::string barriers(const RunRecord& r) {
     if (r.barriers.empty()) return "";
-    if (r.extras.breakage) return barriers_beside_structure(r);
+    if (r.extras.breakage) return barriers_of_structure(r);
     std::string text =
         "## Barriers\n\n| Barrier | First contact | Impulse x, y, z | Run-up to elevation | Over it |\n"
         "|---|---|---|---|---|\n";

@@ -175,7 +175,7 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
 
 /// "1.2 % of the mass still moves, the fastest at 3.4 m/s".
 std::string motion_text(const RunSummary& s) {
-    return fmt::format("{:.3g} % of the mass {} faster along the map than {:.2g} m/s, the fastest has {:.3g} m/s",
+    return fmt::format("{:.3g} % of the mass {} faster than {:.2g} m/s along the map, the fastest has {:.3g} m/s",
                        100.0 * s.motion.share(), s.motion.share() > 0.0 ? "is still" : "is", s.slow, s.motion.fastest);
 }
 
