@@ -56,7 +56,7 @@ class Examples(InFolder):
         self.assertEqual(fronts, sorted(fronts))
         deepest = [float(depth) for depth in re.findall(r"deepest ([\d.]+) m", said)]
         self.assertEqual(deepest[0], 4.0)  # the release's
-        area = float(re.search(r"by reason of end; (\d+) m2 were covered", said)[1])
+        area = float(re.search(r"by reason of until; (\d+) m2 were covered", said)[1])
         released = float(re.search(r"particles, ([\d.]+) m3 of", said)[1])
         self.assertGreater(area, released / max(deepest))  # on less it would be deeper
 
