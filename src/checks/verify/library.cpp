@@ -24,16 +24,7 @@ const std::vector<Problem>& library() {
 
 const std::vector<Alias>& aliases() {
     static const std::vector<Alias> all = {
-        {"energy_line", {"energy_parabola", "energy_hockey", "energy_avaframe"}, "energy lines on three tracks"},
-        {"dam_obstacle",
-         {"dam_front", "reflected_bore"},
-         "points in space: the front of a dam break, and the force of a stream on a wall that it strikes"},
-        {"jaumann_shear",
-         {"structured_spin"},
-         "stress that turns with the material; simple shear itself is a test of the law (V3)"},
-        {"unconfined_compression",
-         {"structured_stand"},
-         "a block that stands without confinement; its strength itself is a test of the law (V7)"}};
+        {"energy_line", {"energy_parabola", "energy_hockey", "energy_avaframe"}, "energy lines on three tracks"}};
     return all;
 }
 
