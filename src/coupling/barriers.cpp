@@ -156,10 +156,7 @@ Surface surface_of(const Barrier& barrier, const Raster& bed, double cell) {
     return surface;
 }
 
-namespace {
-
-/// Of a barrier as columns meet it. It holds the ground around itself alone: terrains are large, and barriers many.
-Surface surface_for_columns(const Barrier& barrier, const Scene& scene) {
+Surface surface_around(const Barrier& barrier, const Scene& scene) {
     const double cell = cell_for_columns(barrier, scene);
     if (barrier.shape) return surface_of(barrier, scene.bed, cell);
     std::vector<Vec2> corners;
@@ -171,13 +168,11 @@ Surface surface_for_columns(const Barrier& barrier, const Scene& scene) {
     return surface_of(barrier, near.nx > 1 && near.ny > 1 ? part_of(scene.bed, near) : scene.bed, cell);
 }
 
-}  // namespace
-
 std::vector<BarrierNode> barrier_nodes(const Scene& scene) {
     std::vector<BarrierNode> nodes;
     const GridGeometry& g = scene.bed.geometry;
     for (const Barrier& barrier : scene.barriers) {
-        const Surface solid = surface_for_columns(barrier, scene);
+        const Surface solid = surface_around(barrier, scene);
         const auto box = box_around(solid);
         const NodeBox near = nodes_around(box, g);
         for (Index j = near.j0; j < near.j0 + near.ny; ++j)
@@ -286,7 +281,7 @@ BarrierTiles::BarrierTiles(const GridGeometry& grid, const std::vector<std::pair
 
 ColumnWatch::ColumnWatch(const Scene& scene) : cell_(scene.bed.geometry.cell) {
     for (const Barrier& barrier : scene.barriers) {
-        surfaces_.push_back(surface_for_columns(barrier, scene));
+        surfaces_.push_back(surface_around(barrier, scene));
         boxes_.push_back(box_around(surfaces_.back()));
         BarrierLoad load;
         load.about = middle_of(surfaces_.back(), scene.bed);

@@ -49,6 +49,9 @@ std::vector<std::string> remarks_on(const Footings& footings);
 /// A barrier of that scene as a 3D surface. Throws as solid_of().
 Surface surface_of(const Barrier& barrier, const Raster& bed, double cell);
 
+/// The same as columns meet it. It holds the ground around itself alone: terrains are large, and barriers many.
+Surface surface_around(const Barrier& barrier, const Scene& scene);
+
 /// Lowest and highest corner of the box around a barrier; of a shape without the room around it [m].
 std::pair<Vec3, Vec3> box_around(const Surface& barrier);
 

@@ -224,9 +224,8 @@ void StructuredRun::remark_on_low_barriers(std::vector<std::string>& remarks) co
             }
         if (over > 0.0)
             remarks.push_back(fmt::format(
-                "barrier \"{}\": found material up to {:.3g} m higher than the barrier beside it; expected a barrier "
-                "that is not run over, since beside material.structure it counts as any height; raise the elevation "
-                "model there instead",
+                "barrier \"{}\": found material up to {:.3g} m higher than it; expected none, since with "
+                "material.structure a barrier counts as any height; raise the elevation model there instead",
                 barrier.name, over));
     }
 }

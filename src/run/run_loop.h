@@ -48,8 +48,12 @@ struct RunSummary {
     std::vector<PhaseTime> output;  ///< wall time by observer, "frame": gathering what they look at, "checkpoint"
     std::string started, ended;     ///< wall clock, UTC, ISO 8601
 
+    /// The time that it was to run is over: all of it, or a part.
+    bool time_is_over() const { return reason == "end" || reason == "until"; }
+    /// That ended it, or rest did.
+    bool ended_by_rule() const { return time_is_over() || reason == "rest"; }
     /// The time was over before the mass had come to rest.
-    bool still_moves() const { return (reason == "end" || reason == "until") && motion.share() > 0.0; }
+    bool still_moves() const { return time_is_over() && motion.share() > 0.0; }
 
     double output_seconds() const;
     double output_share() const { return wall_seconds > 0.0 ? output_seconds() / wall_seconds : 0.0; }

@@ -133,8 +133,7 @@ private:
         Index k;
         double own;
     };
-    Supported* supported(Index k);
-    const Supported* supported(Index k) const { return const_cast<DepthAveraged*>(this)->supported(k); }
+    std::optional<std::size_t> supported(Index k) const;
     double own_depth(Index k) const;
     bool is_support(const Supported& node) const;
     bool is_support(Index k) const;

@@ -96,25 +96,26 @@ void DepthAveraged::fold_with_support() {
     for (Supported& node : supported_) node.own = flow_.nodes.column_mass[node.k] - node.own;  // now what is not
     for (int axis = 0; axis < 2; ++axis)
         for_each_wall_pair(flow_, axis, 0, [&](Index ghost, Index mirror) {
-            const Supported* const from = supported(ghost);
-            Supported* const to = supported(mirror);
-            if (from && to) to->own += from->own;
+            const auto from = supported(ghost), to = supported(mirror);
+            if (from && to) supported_[*to].own += supported_[*from].own;
         });
     fold_walls(flow_);
     for (Supported& node : supported_) node.own = std::max(0.0, flow_.nodes.column_mass[node.k] - node.own);
 }
 
-DepthAveraged::Supported* DepthAveraged::supported(Index k) {
+/// Where a node stands among those; nothing where no inflow is held up there.
+std::optional<std::size_t> DepthAveraged::supported(Index k) const {
     const auto found = std::lower_bound(supported_.begin(), supported_.end(), k,
                                         [](const Supported& a, Index wanted) { return a.k < wanted; });
-    return found != supported_.end() && found->k == k ? &*found : nullptr;
+    if (found == supported_.end() || found->k != k) return {};
+    return static_cast<std::size_t>(found - supported_.begin());
 }
 
 /// Depth of the flow itself at a node [m].
 double DepthAveraged::own_depth(Index k) const {
-    const Supported* const node = supported(k);
-    if (!node) return flow_.nodes.depth[k];
-    const double own = node->own / (flow_.density * flow_.area);
+    const auto place = supported(k);
+    if (!place) return flow_.nodes.depth[k];
+    const double own = supported_[*place].own / (flow_.density * flow_.area);
     return own > flow_.dry_depth() ? own : 0.0;
 }
 
@@ -122,8 +123,8 @@ double DepthAveraged::own_depth(Index k) const {
 bool DepthAveraged::is_support(const Supported& node) const { return node.own < 0.5 * flow_.nodes.column_mass[node.k]; }
 
 bool DepthAveraged::is_support(Index k) const {
-    const Supported* const node = supported(k);
-    return node && is_support(*node);
+    const auto place = supported(k);
+    return place && is_support(supported_[*place]);
 }
 
 /// Sums over nodes, anew for the tiles that have some.

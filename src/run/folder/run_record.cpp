@@ -180,9 +180,7 @@ std::string motion_text(const RunSummary& s) {
 }
 
 /// Whether a rule, or the end of the time, stopped what was still in motion.
-bool stopped_in_motion(const RunSummary& s) {
-    return (s.reason == "end" || s.reason == "until" || s.reason == "rest") && s.motion.fastest > 0.0;
-}
+bool stopped_in_motion(const RunSummary& s) { return s.ended_by_rule() && s.motion.fastest > 0.0; }
 
 std::string reason_text(const RunRecord& record) {
     const RunSummary& summary = record.summary;
@@ -206,8 +204,7 @@ std::string reason_text(const RunRecord& record) {
 
 /// Why the run ended, and what was in motion then.
 Json rest_json(const RunSummary& s) {
-    const bool by_rule = s.reason == "end" || s.reason == "until" || s.reason == "rest";
-    return {{"reason", !by_rule               ? s.reason
+    return {{"reason", !s.ended_by_rule()     ? s.reason
                        : stopped_in_motion(s) ? "stopped by the rule"
                                               : "at rest"},
             {"moving_mass_share", s.motion.share()},
