@@ -68,10 +68,25 @@ public:
                           text +
                               "[[material.zone]]\nbelow = 6000\nmu = 0.5\n[erodible]\nlaw = \"growth\"\n"
                               "growth = 0.05\ndepth = \"loose.tif\"\n[forest]\ndetrainment = 20\n");
+        make_release_by_raster();
     }
     const fs::path& path() const { return folder_.path(); }
 
 private:
+    /// The same place by depths on pixels of 10 m of all the terrain, all but 25 of them 0.
+    void make_release_by_raster() {
+        RasterSpec spec;
+        spec.columns = spec.rows = kPixels / 2;
+        spec.transform = {kWest, 10.0, 0.0, kSouth + kPixels * kCell, 0.0, -10.0};
+        spec.options = {"TILED=YES", "COMPRESS=DEFLATE", "ZLEVEL=1"};
+        spec.value = [](int column, int row) {
+            return column >= 1500 && column < 1505 && row >= 1495 && row < 1500 ? 1.0 + 0.25 * (column % 2) : 0.0;
+        };
+        make_raster(folder_.path() / "depth.tif", spec);
+        std::string text = text_of(folder_.path() / "case.toml");
+        text.replace(text.find("outline"), text.find("[material") - text.find("outline"), "depth = \"depth.tif\"\n");
+        frana::write_text(folder_.path() / "raster.toml", text);
+    }
     FreshFolder folder_;
 };
 
@@ -104,7 +119,7 @@ double peak_memory(const fs::path& folder, const std::vector<std::string>& argum
 
 TEST_CASE("A run on a large terrain takes memory by what the flow reaches", "[terrain]") {
     const fs::path folder = large_terrain().path();
-    const std::string file = GENERATE("case.toml", "fields.toml");
+    const std::string file = GENERATE("case.toml", "fields.toml", "raster.toml");
     INFO(file);
     const double bytes = peak_memory(folder, {"run", file, "--quiet", "--out", "large", "--overwrite"});
     // The elevations of all of the terrain, as doubles, with their slopes alone would be 36e6 x 24 bytes. The part that
@@ -121,7 +136,7 @@ TEST_CASE("A run on a large terrain takes memory by what the flow reaches", "[te
 
 TEST_CASE("A run on a large terrain has the bits of a run on a window of it", "[terrain]") {
     const fs::path folder = large_terrain().path();
-    const std::string file = GENERATE("case.toml", "fields.toml");
+    const std::string file = GENERATE("case.toml", "fields.toml", "raster.toml");
     INFO(file);
     REQUIRE(call_frana(folder, "run " + file + " --quiet --out whole --overwrite").code == 0);
     // 2001 pixels from the west, 1903 from the south: no multiple of a tile.

@@ -8,6 +8,7 @@
 #include "io/gdal_crs.h"
 #include "io/gdal_onto.h"
 #include "io/gdal_reader.h"
+#include "terrain/part_of.h"
 
 namespace frana {
 namespace {
@@ -148,6 +149,31 @@ RasterPlace GdalReader::place_of(const std::filesystem::path& file, const std::a
     return {gdal::touched(raster.x_axis(), extent[0], extent[2])[1] > 0 &&
                 gdal::touched(raster.y_axis(), extent[1], extent[3])[1] > 0,
             false};
+}
+
+std::optional<std::array<double, 4>> GdalReader::extent_above_zero(const std::filesystem::path& file,
+                                                                   const std::array<double, 4>& extent,
+                                                                   const std::string& crs_wkt) const {
+    constexpr Index kRows = 64;
+    std::vector<std::string> said_when_it_is_read;
+    const RasterFile raster(file, gdal::Meaning::any, said_when_it_is_read);
+    if (needs_warp(raster, crs_wkt)) return {};
+    const auto [i0, nx] = gdal::touched(raster.x_axis(), extent[0], extent[2]);
+    const auto [j0, ny] = gdal::touched(raster.y_axis(), extent[1], extent[3]);
+    NodeBox box;
+    for (Index row = 0; row < ny; row += kRows) {
+        const Index rows = std::min(kRows, ny - row);
+        const std::vector<double> values = raster.read(i0, j0 + row, nx, rows);
+        for (std::size_t k = 0; k < values.size(); ++k)
+            if (values[k] > 0.0) {
+                const Index at = static_cast<Index>(k);
+                box = united(box, {i0 + at % nx, j0 + row + at / nx, 1, 1});
+            }
+    }
+    if (box.nx == 0) return {};
+    const auto edge = [](const PixelAxis& axis, Index n) { return axis.start + axis.size * static_cast<double>(n); };
+    return {{edge(raster.x_axis(), box.i0), edge(raster.y_axis(), box.j0), edge(raster.x_axis(), box.i0 + box.nx),
+             edge(raster.y_axis(), box.j0 + box.ny)}};
 }
 
 Raster GdalReader::read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,

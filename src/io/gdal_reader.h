@@ -25,6 +25,11 @@ public:
     RasterPlace place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
                          const std::string& crs_wkt) const override;
 
+    /// Reads strips of rows, and keeps none.
+    std::optional<std::array<double, 4>> extent_above_zero(const std::filesystem::path& file,
+                                                           const std::array<double, 4>& extent,
+                                                           const std::string& crs_wkt) const override;
+
     /// A reprojected raster comes in square pixels of the mean area of its own, bilinear.
     Raster read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
                        const std::string& crs_wkt, std::vector<std::string>& log) const override;

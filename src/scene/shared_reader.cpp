@@ -91,6 +91,13 @@ RasterPlace SharedReader::place_of(const std::filesystem::path& file, const std:
     return inner_.place_of(file, extent, crs_wkt);
 }
 
+std::optional<std::array<double, 4>> SharedReader::extent_above_zero(const std::filesystem::path& file,
+                                                                     const std::array<double, 4>& extent,
+                                                                     const std::string& crs_wkt) const {
+    const std::lock_guard<std::recursive_mutex> alone(*mutex_);
+    return inner_.extent_above_zero(file, extent, crs_wkt);
+}
+
 Raster SharedReader::read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
                                  const std::string& crs_wkt, std::vector<std::string>& log) const {
     return recalled(rasters_, fmt::format("raster {} {} {}", file.string(), extent, crs_wkt), log,

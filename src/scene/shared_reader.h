@@ -22,6 +22,9 @@ public:
     std::shared_ptr<const GisReader> lasting() const override;
     RasterPlace place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
                          const std::string& crs_wkt) const override;
+    std::optional<std::array<double, 4>> extent_above_zero(const std::filesystem::path& file,
+                                                           const std::array<double, 4>& extent,
+                                                           const std::string& crs_wkt) const override;
     Raster read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
                        const std::string& crs_wkt, std::vector<std::string>& log) const override;
     Raster read_onto(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,

@@ -28,8 +28,26 @@ bool may_begin_with_part(const CaseFile& file, const Scene& scene) {
     if (friction_by_table(file)) return false;  // its classes follow from terrain around a node
     if (friction_differs(file) && file.word("deposition.law") != "none") return false;  // if any node holds, all may
     if (file.word("material.structure.law") != "none" || file.word("water.model") != "none") return false;
-    for (Index i = 0; i < file.count("release"); ++i)
-        if (!file.given(fmt::format("release.{}.outline", i))) return false;
+    return true;
+}
+
+/// Where a release may have material: its outline, or the pixels above 0 of its mask or depth. False where neither tells.
+bool take_release(const CaseFile& file, Index i, const GisReader& reader, const Raster& whole,
+                  std::vector<Vec2>& points) {
+    const std::string table = fmt::format("release.{}.", i);
+    if (file.given(table + "outline")) {
+        std::vector<std::string> said_later;
+        std::string name = file.path(table + "outline").string();
+        if (file.given(table + "layer")) name.append(kLayerMark).append(file.word(table + "layer"));
+        take_corners(reader.read_polygons(name, whole.crs_wkt, said_later), points);
+        return true;
+    }
+    const std::string field = table + (file.given(table + "mask") ? "mask" : "depth");
+    if (!file.given(field) || !file.is_text(field)) return false;
+    const auto box = reader.extent_above_zero(file.path(field), whole.geometry.pixel_extent(), whole.crs_wkt);
+    if (!box) return false;
+    points.emplace_back((*box)[0], (*box)[1]);
+    points.emplace_back((*box)[2], (*box)[3]);
     return true;
 }
 
@@ -72,15 +90,11 @@ void take_inflows(const CaseFile& file, const GisReader& reader, const Raster& w
     }
 }
 
+/// None where some of it may be anywhere.
 std::vector<Vec2> corners_of_material(const CaseFile& file, const GisReader& reader, const Raster& whole) {
     std::vector<Vec2> points;
-    std::vector<std::string> said_later;
-    for (Index i = 0; i < file.count("release"); ++i) {
-        const std::string table = fmt::format("release.{}.", i);
-        std::string name = file.path(table + "outline").string();
-        if (file.given(table + "layer")) name.append(kLayerMark).append(file.word(table + "layer"));
-        take_corners(reader.read_polygons(name, whole.crs_wkt, said_later), points);
-    }
+    for (Index i = 0; i < file.count("release"); ++i)
+        if (!take_release(file, i, reader, whole, points)) return {};
     take_inflows(file, reader, whole, points);
     return points;
 }
@@ -138,7 +152,9 @@ std::optional<TerrainPart> part_to_begin_with(const CaseFile& file, const Scene&
     std::vector<Vec2> others;
     try {
         if (!fields_may_follow(file, reader, whole)) return {};
-        part.box = common(cells_of(corners_of_material(file, reader, whole), whole.geometry), all);
+        const std::vector<Vec2> material = corners_of_material(file, reader, whole);
+        if (material.empty()) return {};
+        part.box = common(cells_of(material, whole.geometry), all);
         part.shown = shown_places(file, reader, whole);
         take_lines(file, "section", reader, whole, others);
     } catch (const UserError&) {

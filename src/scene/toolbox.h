@@ -56,6 +56,13 @@ public:
                                  const std::string& /*crs_wkt*/) const {
         return {};
     }
+    /// The box around the pixels above 0 of a raster that `extent` touches, both as xmin, ymin, xmax, ymax.
+    /// Nothing: there are none, or it cannot be told here, as for a raster that has to be reprojected.
+    virtual std::optional<std::array<double, 4>> extent_above_zero(const std::filesystem::path& /*file*/,
+                                                                   const std::array<double, 4>& /*extent*/,
+                                                                   const std::string& /*crs_wkt*/) const {
+        return {};
+    }
     /// Any raster (depth, mask, velocity, ...) in its own pixels, cut to the pixels that touch `extent`
     /// (xmin, ymin, xmax, ymax), reprojected only when its CRS is known and differs from `crs_wkt`. Pixels
     /// must be square within 1e-6; NaN where nodata.
