@@ -98,7 +98,7 @@ void StructuredRun::accumulate() {
     if (both_) accumulate_water();
 }
 
-/// The water's part. Rain has come in, and what the ground takes has left. Of its energy friction, viscosity and drag are
+/// The water's part. Rain and what sources bring have come in, and what the ground takes has left. Of its energy friction, viscosity and drag are
 /// recorded; what shocks and the scheme take is what is left, the residual.
 void StructuredRun::accumulate_water() {
     const WaterStatus& w = both_->water().status();
@@ -110,7 +110,7 @@ void StructuredRun::accumulate_water() {
     status_.mass = mass;
     status_.water = density * w.volume, status_.water_volume = w.volume;
     status_.mass_left += density * (l.left + l.infiltrated);
-    status_.mass_in = density * (l.rained + l.entered);
+    status_.mass_in = density * (l.rained + l.entered + l.fed);
     for (std::size_t axis = 0; axis < 2; ++axis) {
         const auto k = static_cast<Eigen::Index>(axis);
         status_.momentum[axis] += density * w.momentum[k];
@@ -122,7 +122,7 @@ void StructuredRun::accumulate_water() {
     status_.dissipated += density * (l.braked + l.sheared) + flow().status().dragged;
     const WaterBody& body = both_->water().body();
     status_.energy_left +=
-        density * (l.energy_out + body.gravity * body.datum * (l.left + l.infiltrated - l.rained - l.entered));
+        density * (l.energy_out + body.gravity * body.datum * (l.left + l.infiltrated - l.rained - l.entered - l.fed));
     status_.max_speed_on_map = std::max(status_.max_speed_on_map, w.max_speed);
 }
 

@@ -147,7 +147,7 @@ double TwoPhaseFlow::confined() const { return confined_volume(columns_); }
 double TwoPhaseFlow::volume_residual() const {
     const WaterLedger& l = water_.status().ledger;
     return confined_volume(columns_) + columns_.status().confined_left + water_.status().volume + l.left +
-           l.infiltrated - l.rained - l.entered - volume_given_;
+           l.infiltrated - l.rained - l.entered - l.fed - volume_given_;
 }
 
 }  // namespace frana
