@@ -128,7 +128,7 @@ TEST_CASE("Energy that sources bring is what the water gains and what is lost as
     s.grid = verify::cells_over(30, 20, 0.5);
     s.bed = [](double, double) { return 40.0; };
     s.start = [](double, double) { return WaterState{0.5}; };
-    s.sides[1] = WaterSide::open;
+    s.sides[1] = WaterSide::free;
     // Over all of it, away from the wall and out of the open side: there is no bore.
     WaterSource rising{{0.0, 4.0}, {3.0, 9.0}, {0.6, 0.6}, {}};
     const Index nx = s.grid.nx, ny = s.grid.ny;
@@ -178,7 +178,7 @@ TEST_CASE("Water fed at the head of a plane comes to its normal depth, and leave
     s.grid = verify::cells_over(60, 4, 2.0);
     s.bed = [=](double x, double) { return 500.0 - slope * x; };
     s.friction = {WaterFriction::Law::manning, manning};
-    s.sides[1] = WaterSide::open;
+    s.sides[1] = WaterSide::free;
     const double width = 8.0, depth = normal_depth(q, slope, manning);
     s.sources = {across(s.grid, 2, q * width, q / depth, 1e4)};
     WaterFlow flow(s);
@@ -202,13 +202,13 @@ TEST_CASE("Water fed at the head of a plane comes to its normal depth, and leave
     CHECK(flow.momentum_residual().norm() < 1e-12 * (l.ground.norm() + l.friction.norm()));
 }
 
-TEST_CASE("A bore goes out of an open side as if the channel went on", "[water][conserve]") {
+TEST_CASE("A bore goes out of a free side as if the channel went on", "[water][conserve]") {
     // Stoker's dam break; what is behind its bore has the middle state, and that has the whole channel in the end.
     const verify::Stoker wave(1.0, 0.2);
     WaterScene s;
     s.grid = verify::cells_over(200, 3, 0.5);
     s.start = [](double x, double) { return WaterState{x < 60.0 ? 1.0 : 0.2}; };
-    s.sides[1] = WaterSide::open;
+    s.sides[1] = WaterSide::free;
     WaterFlow flow(s);
     go_to(flow, 18.0);  // the bore is at the side after 40 m / 2.9 m/s = 14 s; the fan's head is at the wall after 19 s
     double error = 0.0, sum = 0.0;
@@ -220,7 +220,7 @@ TEST_CASE("A bore goes out of an open side as if the channel went on", "[water][
     CHECK(error < 0.005 * sum);  // verification.txt: 5.9e-3 on 100 cells with the bore inside, 3.1e-3 on 200
     // As it passes the side it leaves a slower wave, which goes back by |u - c| = 0.4 m/s.
     for (Index i = 150; i < 190; ++i) CHECK(flow.at(i, 1).depth == Approx(wave.hm).epsilon(1e-3));
-    for (Index i = 190; i < 200; ++i) CHECK(flow.at(i, 1).depth == Approx(wave.hm).epsilon(0.06));
+    for (Index i = 190; i < 200; ++i) CHECK(flow.at(i, 1).depth == Approx(wave.hm).epsilon(0.04));
     CHECK(flow.status().ledger.entered == 0.0);
 }
 
@@ -325,4 +325,19 @@ TEST_CASE("A side at a level lets water in until it stands at that level", "[wat
     CHECK(flow.at(30, 1).depth < 1e-3);
     const WaterLedger& l = flow.status().ledger;
     CHECK(l.entered - l.left == Approx(flow.status().volume).epsilon(1e-12));
+}
+
+TEST_CASE("A lake that comes in where the last tile is a cell wide loses nothing to the next", "[water][conserve]") {
+    WaterScene s;
+    s.grid = verify::cells_over(2 * kTile + 1, 5, 1.0);
+    const bool held = GENERATE(true, false);
+    s.sides[1] = held ? WaterSide::level : WaterSide::open;
+    s.side_levels[1] = 2.0;
+    if (!held) s.level = 2.0;
+    WaterFlow flow(s);
+    for (int step = 0; step < 20; ++step) {
+        flow.advance(1e3);
+        CHECK(std::abs(flow.volume_residual()) < 1e-13 * flow.status().volume);
+    }
+    CHECK(flow.status().ledger.entered > 10.0);
 }

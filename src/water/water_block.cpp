@@ -35,6 +35,22 @@ void lake_beyond(const WaterBody& body, WaterBlock& block, const Side& side, Ind
     }
 }
 
+/// Water that leaves by a free side has the depth and the speed of the cell before the last one: in steady flow nothing then
+/// changes towards the side. Where both cells differ by more than kEven, as at a bore or on rough ground, by that much.
+void even_out(WaterBlock& block, const Side& side, Index inside, Index step, Index room) {
+    constexpr double kEven = 0.1;
+    const auto nearer = [&](double last, double before) {
+        const double most = kEven * std::abs(last);
+        return last + std::clamp(before - last, -most, most);
+    };
+    const double depth = nearer(block.depth[inside], block.depth[inside + step]),
+                 speed = nearer(side.normal[inside], side.normal[inside + step]);
+    for (Index n = 1; n <= std::min(kHalo, room); ++n) {
+        const Index to = inside - n * step;
+        block.surface[to] += depth - block.depth[to], block.depth[to] = depth, side.normal[to] = speed;
+    }
+}
+
 /// What lies beyond a side, from the cells before it: `inside` is the last cell, `step` leads into the grid.
 /// A wall is a mirror, and so is an open side that water does not leave by. Where it does, the ground goes on
 /// as it falls, or level, with water as deep and as fast. `room`: cells the block has.
@@ -52,6 +68,7 @@ void beyond(const WaterBody& body, WaterBlock& block, const Side& side, Index in
         else
             side.normal[to] = -side.normal[to];
     }
+    if (leaves && body.sides[side.number] == WaterSide::free) even_out(block, side, inside, step, room);
 }
 
 void load_row(const WaterBody& body, const WaterFields& from, const TilePart& part, Index b, WaterBlock& block) {

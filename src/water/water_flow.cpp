@@ -15,6 +15,9 @@
 namespace frana {
 namespace {
 
+/// Cells: a lake beyond a side fills dry cells in both stages of a step; one more for good measure.
+constexpr Index kLakeReach = 3;
+
 constexpr Index kBeyond = 2;  ///< nodes beyond the grid whose bed is known, for slopes at its sides
 
 /// The bed at nodes and a little beyond, where it goes on as it ends; the lowest elevation in whole metres is
@@ -131,13 +134,25 @@ void WaterFlow::place_sources() {
     if (sources_.empty()) return;
     for (LazyArray<double>* field : {&body_.fed, &body_.fed_x, &body_.fed_y}) *field = LazyArray<double>(grid.size());
     for (const WaterSource& source : sources_) {
-        expect(source.discharge.size() == source.time.size() && source.speed.size() == source.time.size(),
+        expect(source.time.size() > 1 && source.discharge.size() == source.time.size() &&
+                   source.speed.size() == source.time.size(),
                "each time of a source has its discharge and its speed");
         for (const WaterSource::Place& at : source.places) {
             expect(at.i >= 0 && at.j >= 0 && at.i < grid.nx() && at.j < grid.ny(), "sources lie in the grid");
-            rained_[static_cast<std::size_t>((at.j / kTile + 1) * grid.tiles_x() + at.i / kTile + 1)] = 1;
+            expect_water(at.i, at.j, 0);
         }
     }
+}
+
+/// Always visits the tiles of the cells around one that water may come to, as far as it gets within a step.
+void WaterFlow::expect_water(Index i, Index j, Index reach) {
+    const TileGrid& grid = body_.grid;
+    const auto clamped = [](Index n, Index count) { return std::clamp<Index>(n, 0, count - 1); };
+    for (const Index dj : {-reach, reach})
+        for (const Index di : {-reach, reach}) {
+            const Index a = clamped(i + di, grid.nx()), b = clamped(j + dj, grid.ny());
+            rained_[static_cast<std::size_t>((b / kTile + 1) * grid.tiles_x() + a / kTile + 1)] = 1;
+        }
 }
 
 /// What sources bring from now to `end` [s]: the table's integrals over it, so that no step loses any.
@@ -167,8 +182,8 @@ void WaterFlow::place(const WaterScene& scene) {
     for (Index j = 0; j < g.ny; ++j)
         for (Index i = 0; i < g.nx; ++i) {
             const Index k = grid.at(i, j);
-            if ((body_.rain && body_.rain[k] > 0.0) || body_.meets_lake(i, j))
-                rained_[static_cast<std::size_t>((j / kTile + 1) * grid.tiles_x() + i / kTile + 1)] = 1;
+            if (body_.rain && body_.rain[k] > 0.0) comes_on_ = true, expect_water(i, j, 0);
+            if (body_.meets_lake(i, j)) comes_on_ = true, expect_water(i, j, kLakeReach);
             if (!scene.start) continue;
             const WaterState s = scene.start(g.x(i), g.y(j));
             expect(s.depth >= 0.0, "water at the start has no negative depth");
@@ -290,6 +305,23 @@ void WaterFlow::take_changes(const std::vector<Index>& tiles) {
     take(summed());
     status_.ledger.released += status_.volume - volume;
     status_.ledger.columns += status_.momentum - momentum;
+}
+
+double WaterFlow::due_so_far() const {
+    double sum = 0.0;
+    for (const WaterSource& source : sources_) sum += volume_until(source, status_.time);
+    return sum;
+}
+
+double WaterFlow::due_at_all() const {
+    double sum = 0.0;
+    for (const WaterSource& source : sources_) sum += volume_until(source, source.time.back());
+    return sum;
+}
+
+bool WaterFlow::sources_go_on() const {
+    return std::any_of(sources_.begin(), sources_.end(),
+                       [&](const WaterSource& source) { return status_.time < source.time.back(); });
 }
 
 WaterState WaterFlow::at(Index i, Index j) const {

@@ -18,9 +18,9 @@
 
 namespace frana {
 
-/// What a side of the grid does: stops the water; lets it go, and none comes in but of a lake (WaterScene::level); or holds it
-/// at a level (WaterScene::side_levels), where it goes both ways.
-enum class WaterSide { wall, open, level };
+/// What a side of the grid does: stops the water; lets it go, and none comes in (free), or of a lake alone (open:
+/// WaterScene::level); or holds it at a level (WaterScene::side_levels), where it goes both ways.
+enum class WaterSide { wall, open, free, level };
 
 /// Water that comes in at cells: a discharge and a speed that are linear between the times of a table. Before and after it
 /// nothing comes.
@@ -195,6 +195,13 @@ public:
     WaterState at(Index i, Index j) const;
     double surface(Index i, Index j) const;
     std::vector<PhaseTime> timings() const { return timed_.times(); }
+    /// By the tables of the sources, up to now and on the whole [m^3].
+    double due_so_far() const;
+    double due_at_all() const;
+    /// Whether sources have more to bring.
+    bool sources_go_on() const;
+    /// Whether water comes without end: as rain, or from a lake beyond a side.
+    bool comes_on() const { return comes_on_; }
     /// Present + left + infiltrated - rained - entered - fed - given [m^3], and momentum the same way [m^4/s]: round-off
     double volume_residual() const;
     Vec2 momentum_residual() const;
@@ -202,6 +209,7 @@ public:
 private:
     void place(const WaterScene& scene);
     void place_sources();
+    void expect_water(Index i, Index j, Index reach);
     void feed(double end);
     void list_tiles();
     void clear_tiles();
@@ -216,6 +224,7 @@ private:
     std::vector<std::uint8_t> wanted_;  ///< per tile: on the next list
     std::vector<std::uint8_t> rained_;  ///< per tile: rain may fall on it, a source be there, or a lake come in
     std::vector<WaterSource> sources_;
+    bool comes_on_ = false;
     std::vector<Index> next_;
     double cfl_;
     double signal_ = 0.0;  ///< largest speed of water and waves [m/s]
