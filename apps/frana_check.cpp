@@ -13,6 +13,7 @@
 #include "io/gdal_reader.h"
 #include "run/folder/run_insitu.h"
 #include "run/folder/run_page.h"
+#include "scene/inflow_facts.h"
 #include "scene/memory_need.h"
 #include "shallow/feed.h"
 #include "vtk_io/barrier_mesh.h"
@@ -24,6 +25,12 @@ namespace {
 constexpr double seconds_per_particle_step = 150e-9;  ///< whole step on one core
 
 constexpr double seconds_per_point_step = 300e-9;  ///< of 3D points
+
+constexpr double seconds_per_cell_step = 100e-9;  ///< of cells of free water
+constexpr double kWaterCfl = 0.45;                ///< part of a cell that its waves pass in a step
+
+/// Free water is all that there is: it is on cells, and what is released and comes in has no particles.
+bool water_alone(const Scene& scene) { return scene.water && !scene.structure; }
 
 std::string crs_name(const std::string& wkt) {
     const std::size_t begin = wkt.find('"');
@@ -82,6 +89,8 @@ std::string total_text(const BuiltScene& built) {
     const double density =
         water ? (1.0 - water->share) * built.scene.density + water->share * water->exchange.material.fluid_density
               : built.scene.density;
+    if (water_alone(built.scene))
+        return fmt::format("total       {:.9g} m3 of water in releases, of {:.9g} m3\n", particle_volume, volume);
     std::string text = fmt::format("total       {} particles, {:.9g} m3 of {:.9g} m3, {:.6g} kg\n",
                                    particles_of(built.scene), particle_volume, volume, particle_volume * density);
     if (!built.scene.inflows.empty())
@@ -94,7 +103,7 @@ struct Forecast {
     double fewest_steps = 0.0;      ///< at the speeds of the start
     double most_steps = 0.0;        ///< at free-fall speed all the time
     double fall_speed = 0.0;        ///< [m/s]
-    double particle_seconds = 0.0;  ///< sum of the times that particles are in the flow [s]
+    double particle_seconds = 0.0;  ///< sum of the times that particles are in the flow, or cells may be [s]
 };
 
 /// What a forecast sees of all material, at once or later.
@@ -112,6 +121,23 @@ struct Start {
     }
 };
 
+/// A lake, and what comes in at its line; every cell may be wet all the time.
+void add_water(const Scene& scene, Start& start) {
+    const GridGeometry& g = scene.bed.geometry;
+    const WaterPhase& water = *scene.water;
+    for (Index k = 0; water.level && k < g.size(); ++k)
+        if (water.lake.empty() || water.lake[static_cast<std::size_t>(k)])
+            start.add(scene.bed, g.x(k % g.nx), g.y(k / g.nx),
+                      std::max(0.0, *water.level - scene.bed.values[static_cast<std::size_t>(k)]));
+    for (const Inflow& inflow : scene.inflows) {
+        const InflowFacts facts = facts_of(inflow, scene.gravity);
+        start.speed = std::max(start.speed, facts.speed);
+        for (const Vec2& place : inflow.line) start.add(scene.bed, place.x(), place.y(), facts.thickness);
+        for (const Inflow::Patch& patch : inflow.patches) start.add(scene.bed, patch.at.x(), patch.at.y(), 0.0);
+    }
+    start.particle_seconds = static_cast<double>(g.size()) * scene.end;
+}
+
 Start start_of(const Scene& scene) {
     Start start;
     for (const double z : scene.bed.values)
@@ -125,6 +151,10 @@ Start start_of(const Scene& scene) {
     start.particle_seconds = static_cast<double>(particles_of(scene)) * scene.end;
     for (const LateRelease& late : scene.late)  // when the flow reaches one is not known
         start.particle_seconds -= static_cast<double>(late.seeds.count()) * std::min(late.at.value_or(0.0), scene.end);
+    if (water_alone(scene)) {
+        add_water(scene, start);
+        return start;
+    }
     const Feed::Outlook inflow = Feed(scene.inflows).outlook(scene.end);
     for (const Vec2& place : inflow.from) start.add(scene.bed, place.x(), place.y(), inflow.depth);
     start.speed = std::max(start.speed, inflow.speed);
@@ -138,7 +168,8 @@ Forecast forecast(const Scene& scene) {
     double wave = std::sqrt(scene.gravity * start.depth);
     if (scene.structure) wave += ColumnLaw(scene.structure->material).sound_speed(scene.density);
     result.fall_speed = std::sqrt(start.speed * start.speed + 2.0 * scene.gravity * (start.top - start.lowest));
-    const double reach = (scene.structure ? scene.structure->cfl : scene.scheme.cfl) * scene.bed.geometry.cell;
+    const double cfl = scene.structure ? scene.structure->cfl : water_alone(scene) ? kWaterCfl : scene.scheme.cfl;
+    const double reach = cfl * scene.bed.geometry.cell;
     result.fewest_steps = std::ceil(scene.end * (start.speed + wave) / reach);
     result.most_steps = std::ceil(scene.end * (result.fall_speed + wave) / reach);
     if (scene.water && scene.water->viscosity.kinematic > 0.0) {
@@ -206,16 +237,17 @@ std::string frames_text(const Scene& scene) {
 
 std::string forecast_text(const Scene& scene) {
     const Forecast f = forecast(scene);
-    const double per_step = scene.end > 0.0 ? f.particle_seconds / scene.end * seconds_per_particle_step : 0.0;
+    const bool water = water_alone(scene);
+    const double each = water ? seconds_per_cell_step : seconds_per_particle_step;
+    const double per_step = scene.end > 0.0 ? f.particle_seconds / scene.end * each : 0.0;
     std::string text =
         fmt::format("steps       {:.0f} (as fast as at the start) to {:.0f} (in free fall, {:.3g} m/s), for {} s\n",
                     f.fewest_steps, f.most_steps, f.fall_speed, scene.end);
-    text += fmt::format("memory      about {:.3g} MB, as long as particles do not split\n",
-                        memory_need(scene).total() / 1e6);
-    return text +
-           fmt::format("time        {} to {} on one core, assuming {:.0f} ns per particle and step, output apart\n",
-                       seconds_text(f.fewest_steps * per_step), seconds_text(f.most_steps * per_step),
-                       seconds_per_particle_step * 1e9);
+    text += fmt::format("memory      about {:.3g} MB{}\n", memory_need(scene).total() / 1e6,
+                        water ? "" : ", as long as particles do not split");
+    return text + fmt::format("time        {} to {} on one core, assuming {:.0f} ns per {} and step, output apart\n",
+                              seconds_text(f.fewest_steps * per_step), seconds_text(f.most_steps * per_step),
+                              each * 1e9, water ? "cell, were all of them wet," : "particle");
 }
 
 /// A line for each barrier, or one for many.

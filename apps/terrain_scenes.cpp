@@ -185,7 +185,8 @@ const std::vector<NamedScene>& made_scenes() {
         {"avalanche_track", "parabolic slope with a channel and a flat run-out", avalanche_track},
         {"loose_gully", "gully with loose ground in its bed, and a fan", loose_gully},
         {"fan", "fan with houses below a gully", fan},
-        {"two_gullies", "two gullies side by side on a rough slope, with three scars", two_gullies}};
+        {"two_gullies", "two gullies side by side on a rough slope, with three scars", two_gullies},
+        {"moraine_lake", "valley with a lake behind a moraine that is cut through", moraine_lake}};
     return scenes;
 }
 

@@ -72,6 +72,9 @@ MadeScene fan();
 /// Two gullies 230 m apart on a slope of 32 degrees at its head and 3 at its foot, rough by a metre or two, with the scars of
 /// two slides and of one that is feared; 10 m cells.
 MadeScene two_gullies();
+/// A mountain valley with bends, with a moraine of 26 m across it that is cut through to its floor, an outline of the lake
+/// behind it, and a plain below; 10 m cells.
+MadeScene moraine_lake();
 
 /// A scene by name.
 struct NamedScene {

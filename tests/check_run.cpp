@@ -3,7 +3,8 @@
 //   budgets.mass.relative_error     a number of run.json; barriers.0.first_contact: of the first of a list
 //   compare/iou                     a number of compare.json
 //   convert/start/conservation.mass.relative_error   a number of convert/start.conservation.json
-//   table/insitu/stress.csv/depth_max/last   last (or first) number of a column of a table, named without its unit
+//   table/insitu/stress.csv/depth_max/last   last (or first, or the largest absolute: max) number of a column of a table,
+//                                   named without its unit
 //   history/max_speed/max           largest absolute value (or: last) of a column of history.csv
 //   profile/x675/length/last        of a profile, last (or first) output: way from the first to the last
 //                                   station deeper than 0.1 m; gap: widest way between two of them; depth
@@ -54,6 +55,12 @@ double from_json(const std::filesystem::path& file, const std::string& quantity)
     return value.get<double>();
 }
 
+double largest_of(const std::vector<Row>& rows, std::size_t place) {
+    double largest = 0.0;
+    for (std::size_t i = 1; i < rows.size(); ++i) largest = std::max(largest, std::abs(std::stod(rows[i].at(place))));
+    return largest;
+}
+
 double from_history(const std::filesystem::path& run, const Row& path) {
     const std::vector<Row> rows = read_csv(run / "history.csv");
     const auto column = std::find(rows[0].begin(), rows[0].end(), path.at(1));
@@ -61,9 +68,7 @@ double from_history(const std::filesystem::path& run, const Row& path) {
     const auto place = static_cast<std::size_t>(column - rows[0].begin());
     if (path.at(2) == "last") return std::stod(rows.back().at(place));
     if (path.at(2) != "max") throw std::runtime_error(path.at(2) + ": expected max or last");
-    double largest = 0.0;
-    for (std::size_t i = 1; i < rows.size(); ++i) largest = std::max(largest, std::abs(std::stod(rows[i].at(place))));
-    return largest;
+    return largest_of(rows, place);
 }
 
 double from_table(const std::filesystem::path& run, const Row& path) {
@@ -71,8 +76,10 @@ double from_table(const std::filesystem::path& run, const Row& path) {
     const auto column = std::find_if(rows[0].begin(), rows[0].end(),
                                      [&](const std::string& name) { return name.rfind(path.at(3) + " [", 0) == 0; });
     if (column == rows[0].end()) throw std::runtime_error(path.at(2) + " has no column " + path.at(3));
+    const auto place = static_cast<std::size_t>(column - rows[0].begin());
+    if (path.at(4) == "max") return largest_of(rows, place);
     const Row& row = path.at(4) == "first" ? rows[1] : rows.back();
-    return std::stod(row.at(static_cast<std::size_t>(column - rows[0].begin())));
+    return std::stod(row.at(place));
 }
 
 /// Columns of a profile: t, distance, x, y, bed, depth, ...

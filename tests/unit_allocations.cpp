@@ -155,6 +155,9 @@ TEST_CASE("Warm steps of free water allocate nothing, wherever it spreads", "[sp
     scene.bed = [](double x, double y) { return -0.1 * x + 0.2 * std::sin(y); };
     scene.start = [](double x, double y) { return WaterState{x < 30.0 && y < 40.0 ? 1.0 : 0.0}; };
     scene.friction = {WaterFriction::Law::manning, 0.03};
+    scene.sides = {WaterSide::wall, WaterSide::free, WaterSide::level, WaterSide::wall};
+    scene.side_levels[2] = 0.2;
+    scene.sources = {{{0.0, 1e9}, {5.0, 5.0}, {1.0, 1.0}, {{90, 20, 0.5, Vec2(1, 0)}, {91, 21, 0.5, Vec2(0, 1)}}}};
     WaterFlow flow(scene);
     for (int step = 0; step < 5; ++step) flow.advance(1e9);
     const long before = allocations;

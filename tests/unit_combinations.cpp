@@ -26,7 +26,8 @@ std::vector<std::string> examples(const Values& values, bool named = true) {
     if (are == Are::above_zero || are == Are::zero) return {named == (are == Are::zero) ? "0" : "0.5"};
     if (are == Are::on || are == Are::off) return {named == (are == Are::on) ? "true" : "false"};
     if (values.are == Are::without) return {"[\"png\"]"};
-    if (are == Are::given) return named ? std::vector<std::string>{"0.5"} : std::vector<std::string>{};
+    if (are == Are::given && !named) return {};
+    if (are == Are::given) return {find_parameter(values.key)->kind == Kind::integer ? "1" : "0.5"};
     if (values.are == Are::tables) return {""};
     if (values.are == Are::rasters) return {named ? "mu.tif" : "0.5"};
     std::vector<std::string> all = find_parameter(values.key)->choices;
@@ -50,9 +51,12 @@ void complete(Sets& sets) {
         return std::any_of(sets.begin(), sets.end(), [&](const auto& set) { return begins(set.first, table); });
     };
     if (any("material.structure.confined_water")) give(sets, "water.model", "free");
-    if (any("water.profile_factor")) give(sets, "water.viscous", "clear"), give(sets, "water.model", "free");
-    if (any("water.") && sets["water.model"] == "free") give(sets, "material.structure.law", "drucker_prager");
+    if (any("water.profile_factor"))
+        give(sets, "water.model", "free"), give(sets, "material.structure.law", "drucker_prager");
+    if (any("water.profile_factor") || any("water.solid_gradient")) give(sets, "water.viscous", "clear");
     if (any("material.bed.mu")) give(sets, "material.bed.law", "coulomb");
+    const auto law = sets.find("material.bed.law");
+    if (law != sets.end() && law->second == "pouliquen") give(sets, "material.bed.mu_2", "0.75");  // more than mu_s
     if (any("terrain.unrolled")) give(sets, "material.structure.law", "drucker_prager");
     if (any("material.structure.")) give(sets, "material.structure.law", "drucker_prager");
     const auto table = sets.find("material.bed.table");
@@ -118,6 +122,7 @@ TEST_CASE("What cannot go together is refused in the words of its row, and only 
         for (const Values& partner : row.with)
             for (const std::string& other : examples(partner)) {
                 Sets sets;
+                for (const Values& also : row.also) sets[also.key] = examples(also).front();
                 std::vector<std::string> tables, none;
                 if (table) tables.push_back(row.refused.key);
                 if (partner.are == Are::tables)
@@ -148,5 +153,6 @@ TEST_CASE("Every combination that is refused is listed for people", "[case][comb
             CHECK(list.find(row.expected) != std::string::npos);
             CHECK(list.find(row.way_out) != std::string::npos);
             for (const Values& values : row.with) CHECK(list.find(values.text()) != std::string::npos);
+            for (const Values& values : row.also) CHECK(list.find(" and " + values.text()) != std::string::npos);
         }
 }

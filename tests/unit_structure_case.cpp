@@ -96,7 +96,9 @@ TEST_CASE("Water beside a structure reaches the scene, and what does not fit it 
     CHECK(water.exchange.void_ratio == 0.67);
     CHECK(WaterExchange{}.void_ratio == 0.67);  // one default, whoever asks for it
     CHECK(water.exchange.material.solid_density == Approx((1900.0 - 250.0) / 0.75).epsilon(1e-15));
-    CHECK(has(problem_of_structure(density + free), "found \"free\" without material.structure"));
+    CHECK(
+        has(problem_of_structure(density + free),
+            "found 1900 with water.model = \"free\" and without material.structure; expected none: what is released"));
     CHECK(has(problem_of_structure(density + structure + "confined_water = 0.2\n"), "found 0.2 without free water"));
     CHECK(has(problem_of_structure("[material]\ndensity = 1000.0\n" + structure + free),
               "expected grains denser than water.density = 1000"));

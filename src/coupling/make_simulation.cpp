@@ -6,7 +6,7 @@
 namespace frana {
 
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, Start start) {
-    if (scene.structure) return std::make_unique<StructuredRun>(scene, start);
+    if (scene.structure || scene.water) return std::make_unique<StructuredRun>(scene, start);
     if (scene.solid) return std::make_unique<StagedRun>(scene, start);
     if (!scene.barriers.empty()) return std::make_unique<WalledColumns>(scene, start);
     if (scene.wider) return std::make_unique<GrowingColumns>(scene, start);

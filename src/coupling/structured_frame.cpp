@@ -44,12 +44,29 @@ Frame StructuredRun::frame() {
         accumulate();
         frame.grid = flow().body().grid.geometry();
         frame.status = status_;
-        particle_fields(frame);
+        if (solids_)
+            particle_fields(frame);
+        else
+            no_particles(frame);
         node_fields(frame);
-        inner_fields(frame);
+        if (solids_) inner_fields(frame);
         if (both_) water_fields(frame);
+        if (both_ && solids_) own_water_fields(frame);
     });
     return frame;
+}
+
+/// Fields that all particles have, of none.
+void StructuredRun::no_particles(Frame& frame) {
+    struct Named {
+        const char *name, *unit;
+        int components;
+    };
+    for (const Named& of :
+         {Named{"position", "m", 3}, Named{"depth", "m", 1}, Named{"thickness", "m", 1}, Named{"velocity", "m/s", 3},
+          Named{"speed", "m/s", 1}, Named{"elevation", "m", 1}, Named{"surface", "m", 1}, Named{"pressure", "Pa", 1},
+          Named{"mass", "kg", 1}, Named{"volume", "m3", 1}, Named{"id", "1", 1}})
+        store_.zeros(frame.particles, of.name, of.unit, of.components, 0);
 }
 
 void StructuredRun::particle_fields(Frame& frame) {
@@ -168,37 +185,62 @@ void StructuredRun::inner_fields(Frame& frame) {
     });
 }
 
-/// Depth, surface and pressure of nodes are those of both, velocity that of both masses together; the water's own are apart.
+namespace {
+
+/// Slope of the bed under a cell of the water, central differences [1].
+Vec2 slope_under(const WaterBody& water, Index k) {
+    const Index stride = water.grid.stride();
+    return 0.5 / water.grid.cell() *
+           Vec2(water.bed[k + 1] - water.bed[k - 1], water.bed[k + stride] - water.bed[k - stride]);
+}
+
+/// Velocity on the map; films stand still [m/s].
+Vec2 velocity_of(const WaterBody& water, Index k) {
+    const double h = water.now.h[k];
+    return h > water.film ? Vec2(water.now.qx[k] / h, water.now.qy[k] / h) : Vec2(0, 0);
+}
+
+}  // namespace
+
+/// Depth, surface and pressure of nodes are those of both, velocity that of both masses together.
 void StructuredRun::water_fields(Frame& frame) {
     const WaterBody& water = both_->water().body();
-    const GridGeometry& g = bed_.geometry;
     const auto find = [&](const char* name) {
         return const_cast<double*>(frame.node(name)->data);  // made just now, by node_fields()
     };
     double *depth = find("depth"), *thickness = find("thickness"), *surface = find("surface"),
            *velocity = find("velocity"), *speed = find("speed"), *pressure = find("pressure");
     const double* elevation = find("elevation");
-    double *water_depth = store_.zeros(frame.nodes, "water_depth", "m", 1, g.size()),
-           *water_velocity = store_.zeros(frame.nodes, "water_velocity", "m/s", 3, g.size()),
-           *water_speed = store_.zeros(frame.nodes, "water_speed", "m/s", 1, g.size());
-    const double per = 0.5 / g.cell;
     for_each_node(water.grid, water.work, [&](Index k, Index n) {
         const double h = water.now.h[k];
         if (!(h > 0.0) || !std::isfinite(elevation[n])) return;
-        const double bx = per * (water.bed[k + 1] - water.bed[k - 1]),
-                     by = per * (water.bed[k + water.grid.stride()] - water.bed[k - water.grid.stride()]);
-        const double u = h > water.film ? water.now.qx[k] / h : 0.0, v = h > water.film ? water.now.qy[k] / h : 0.0;
-        const double own[3] = {u, v, map_.climb(k, u, v)}, all = depth[n] + h,
+        const Vec2 slope = slope_under(water, k), v = velocity_of(water, k);
+        const double own[3] = {v.x(), v.y(), map_.climb(k, v.x(), v.y())}, all = depth[n] + h,
                      columns = flow().body().density * depth[n], both = columns + water_density_ * h;
-        for (int c = 0; c < 3; ++c) {
-            water_velocity[3 * n + c] = own[c];
+        for (int c = 0; c < 3; ++c)
             velocity[3 * n + c] = (columns * velocity[3 * n + c] + water_density_ * h * own[c]) / both;
-        }
         speed[n] = Vec3(velocity[3 * n], velocity[3 * n + 1], velocity[3 * n + 2]).norm();
-        water_speed[n] = Vec3(own[0], own[1], own[2]).norm();
-        water_depth[n] = h, depth[n] = all, surface[n] += h;
-        thickness[n] = all / std::sqrt(1.0 + bx * bx + by * by);
+        depth[n] = all, surface[n] += h;
+        thickness[n] = all / std::sqrt(1.0 + slope.x() * slope.x() + slope.y() * slope.y());
         pressure[n] += water_density_ * water.normal_gravity[k] * h;
+    });
+}
+
+/// The water's own, where columns are beside it.
+void StructuredRun::own_water_fields(Frame& frame) {
+    const WaterBody& water = both_->water().body();
+    const Index size = bed_.geometry.size();
+    const double* elevation = frame.node("elevation")->data;
+    double *depth = store_.zeros(frame.nodes, "water_depth", "m", 1, size),
+           *velocity = store_.zeros(frame.nodes, "water_velocity", "m/s", 3, size),
+           *speed = store_.zeros(frame.nodes, "water_speed", "m/s", 1, size);
+    for_each_node(water.grid, water.work, [&](Index k, Index n) {
+        const double h = water.now.h[k];
+        if (!(h > 0.0) || !std::isfinite(elevation[n])) return;
+        const Vec2 v = velocity_of(water, k);
+        const Vec3 own(v.x(), v.y(), map_.climb(k, v.x(), v.y()));
+        for (int c = 0; c < 3; ++c) velocity[3 * n + c] = own[c];
+        depth[n] = h, speed[n] = own.norm();
     });
 }
 

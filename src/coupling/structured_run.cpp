@@ -10,7 +10,26 @@
 namespace frana {
 namespace {
 
-Vec2 centre_of(const Seeds& seeds) {
+/// Of the water at the start, by its volume; where there is none, of the first inflow; else of the terrain.
+Vec2 centre_of(const WaterScene& water) {
+    const GridGeometry& g = water.grid;
+    Vec2 centre(0, 0);
+    double volume = 0.0;
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) {
+            const double h = water.start(g.x(i), g.y(j)).depth;
+            centre += h * Vec2(g.x(i), g.y(j)), volume += h;
+        }
+    if (volume > 0.0) return centre / volume;
+    if (water.sources.empty()) return 0.5 * Vec2(g.x0 + g.x_max(), g.y0 + g.y_max());
+    for (const WaterSource::Place& at : water.sources.front().places) centre += at.share * Vec2(g.x(at.i), g.y(at.j));
+    return centre;
+}
+
+/// Of all that is there at the start: the front is measured from it.
+Vec2 centre_of(const Scene& scene) {
+    if (!scene.structure) return centre_of(two_phase_scene(scene).water);
+    const Seeds& seeds = scene.particles;
     Vec2 centre(0, 0);
     double volume = 0.0;
     for (std::size_t p = 0; p < seeds.x.size(); ++p) {
@@ -45,7 +64,7 @@ constexpr PieceRule kPieces{kLink, 0.9, 0.02};  // of the damage; of the mass
 
 /// Coordinates along the ground have no slope left for velocities to follow.
 LazyArray<Pair> path_of(const Scene& scene, const TileGrid& grid) {
-    if (scene.structure->unrolled) return LazyArray<Pair>(grid.size());
+    if (scene.structure && scene.structure->unrolled) return LazyArray<Pair>(grid.size());
     return smooth_slopes(scene, grid);
 }
 
@@ -55,10 +74,11 @@ StructuredRun::StructuredRun(const Scene& scene, Start start)
     : bed_(scene.bed),
       barriers_(scene.barriers),
       water_density_(scene.water ? scene.water->exchange.material.fluid_density : 0.0),
+      solids_(scene.structure.has_value()),
+      inflows_(!scene.inflows.empty()),
       alone_(scene.water ? nullptr : std::make_unique<StructuredFlow>(started(scene, start))),
       both_(scene.water ? std::make_unique<TwoPhaseFlow>(wet(scene, start)) : nullptr),
-      map_(flow().body().grid, centre_of(scene.particles), scene.output.footprint_depth,
-           path_of(scene, flow().body().grid)),
+      map_(flow().body().grid, centre_of(scene), scene.output.footprint_depth, path_of(scene, flow().body().grid)),
       neighbours_(flow(), reach_of_neighbours(scene.particles)) {
     if (start == Start::resumed) return;
     map_.note(flow().body(), water(), 0.0);
@@ -70,7 +90,7 @@ void StructuredRun::advance(double until) {
         both_->advance(until);
     else
         alone_->advance(until);
-    timed_("peaks", [&] { map_.note(flow().body(), water(), flow().status().time); });
+    timed_("peaks", [&] { map_.note(flow().body(), water(), time()); });
     accumulate();
 }
 
@@ -98,19 +118,20 @@ void StructuredRun::accumulate() {
     if (both_) accumulate_water();
 }
 
-/// The water's part. Rain has come in, and what the ground takes has left. Of its energy friction, viscosity and drag are
-/// recorded; what shocks and the scheme take is what is left, the residual.
+/// The water's part. Rain and what sources bring have come in, and what the ground takes has left. Of its energy friction,
+/// viscosity and drag are recorded; what shocks and the scheme take is what is left, the residual.
 void StructuredRun::accumulate_water() {
     const WaterStatus& w = both_->water().status();
     const WaterLedger& l = w.ledger;
     const double density = water_density_, solids = status_.mass, mass = solids + density * w.volume;
     const Vec2 left = l.momentum_left + l.momentum_infiltrated,
                thrust = w.momentum_given + l.ground + l.walls + l.friction + l.columns;
+    if (both_->alone()) status_.step = w.step, status_.time = w.time;
     status_.dt = w.dt;
     status_.mass = mass;
     status_.water = density * w.volume, status_.water_volume = w.volume;
     status_.mass_left += density * (l.left + l.infiltrated);
-    status_.mass_in = density * (l.rained + l.entered);
+    status_.mass_in = density * (l.rained + l.entered + l.fed);
     for (std::size_t axis = 0; axis < 2; ++axis) {
         const auto k = static_cast<Eigen::Index>(axis);
         status_.momentum[axis] += density * w.momentum[k];
@@ -122,8 +143,26 @@ void StructuredRun::accumulate_water() {
     status_.dissipated += density * (l.braked + l.sheared) + flow().status().dragged;
     const WaterBody& body = both_->water().body();
     status_.energy_left +=
-        density * (l.energy_out + body.gravity * body.datum * (l.left + l.infiltrated - l.rained - l.entered));
+        density * (l.energy_out + body.gravity * body.datum * (l.left + l.infiltrated - l.rained - l.entered - l.fed));
     status_.max_speed_on_map = std::max(status_.max_speed_on_map, w.max_speed);
+}
+
+/// Water that is still to come in, or falls on ground that has none yet, is about to begin.
+bool StructuredRun::may_rest() const {
+    if (!both_) return true;
+    const WaterFlow& water = both_->water();
+    return !water.sources_go_on() && (solids_ || !water.body().rain);
+}
+
+bool StructuredRun::more_comes() const {
+    return both_ && (both_->water().sources_go_on() || both_->water().comes_on());
+}
+
+std::string StructuredRun::why_not_add(const Seeds& columns) const {
+    if (solids_) return Simulation::why_not_add(columns);
+    return "found a case of free water; expected one of depth-averaged flow alone; give what comes later as an inflow "
+           "of the "
+           "case";
 }
 
 /// Free water counts as material; below the film's depth it stands still.
@@ -154,8 +193,9 @@ Sample StructuredRun::at(const Vec2& point) const {
 
 Extras StructuredRun::extras() const {
     Extras extras;
-    extras.breakage = breakage();
+    if (solids_) extras.breakage = breakage();
     extras.water = water_budget();
+    extras.inflow = inflow_budget();
     return extras;
 }
 
@@ -182,7 +222,7 @@ std::optional<WaterBudget> StructuredRun::water_budget() const {
     b.given = both_->volume_given(), b.free = w.volume, b.confined = both_->confined();
     b.released = flow().status().released;
     b.rained = l.rained, b.infiltrated = l.infiltrated, b.left = l.left + flow().status().confined_left;
-    b.entered = l.entered, b.infiltrated_mass = water_density_ * l.infiltrated;
+    b.entered = l.entered, b.fed = l.fed, b.infiltrated_mass = water_density_ * l.infiltrated;
     b.solids_left = flow().status().mass_left - water_density_ * flow().status().confined_left;
     b.residual = both_->volume_residual();
     b.bed = water_density_ * l.braked, b.viscosity = water_density_ * l.sheared, b.drag = flow().status().dragged;
@@ -190,7 +230,14 @@ std::optional<WaterBudget> StructuredRun::water_budget() const {
     return b;
 }
 
+std::optional<InflowBudget> StructuredRun::inflow_budget() const {
+    if (!both_ || !inflows_) return {};
+    const WaterFlow& water = both_->water();
+    return InflowBudget{water.status().ledger.fed, water.due_so_far(), water.due_at_all()};
+}
+
 std::vector<std::string> StructuredRun::remarks() const {
+    if (!solids_) return {};
     const Breakage now = breakage();
     const StructuredStatus& s = flow().status();
     std::vector<std::string> remarks = remarks_on_lost(s.lost_in_holes, s.mass + s.mass_left);

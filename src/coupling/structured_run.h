@@ -1,5 +1,6 @@
 #pragma once
-// A run of solids that hold together (van den Bout et al. 2021): one model from the start to the end.
+// A run of solids that hold together (van den Bout et al. 2021), of free water beside them, or of the water alone: one model
+// from the start to the end.
 #include <array>
 #include <optional>
 
@@ -15,7 +16,7 @@ namespace frana {
 /// The scene of the columns: the bed's slope by central differences of its nodes, as far as there is ground;
 /// walls and barriers as obstacles.
 StructuredScene structured_scene(const Scene& scene);
-/// The same with its water. Holds on to `scene` until a flow is made of it.
+/// The same with its water, or the water alone. Holds on to `scene` until a flow is made of it.
 TwoPhaseScene two_phase_scene(const Scene& scene);
 
 /// The box of a barrier's outline, which the case's reader has found to be one.
@@ -23,7 +24,7 @@ Obstacle box_of(const Barrier& barrier);
 
 class StructuredRun final : public Simulation {
 public:
-    /// `scene` has a structure.
+    /// `scene` has a structure, free water, or both.
     explicit StructuredRun(const Scene& scene, Start start = Start::placed);
 
     void advance(double until) override;
@@ -32,15 +33,20 @@ public:
     MovingMass motion(const MotionQuery& query) const override;
     /// "stress" is what the structure passes on, its undamaged share, "effective_stress" that and the earth pressure
     /// of grains; "damage" 0 where whole, 1 where grains; "cohesion" what is left of it; with water "depth" of nodes
-    /// is that of both, "water_depth" its part.
+    /// is that of both, "water_depth" its part. Water alone has none of these, and no particles.
     Frame frame() override;
     std::shared_ptr<const void> give_frame_away() override { return store_.give_away(); }
     Sample at(const Vec2& point) const override;
+    bool may_rest() const override;
+    bool more_comes() const override;
+    std::string why_not_add(const Seeds& columns) const override;
     std::vector<std::string> remarks() const override;
     Extras extras() const override;
     Breakage breakage() const;
     /// Nothing in a dry run.
     std::optional<WaterBudget> water_budget() const;
+    /// Nothing without inflows.
+    std::optional<InflowBudget> inflow_budget() const;
     std::vector<PhaseTime> timings() const override;
     void serialize(Archive& archive) override;
 
@@ -51,16 +57,21 @@ public:
 private:
     void accumulate();
     void accumulate_water();
+    double time() const { return both_ ? both_->time() : alone_->status().time; }
+    void no_particles(Frame& frame);
     void particle_fields(Frame& frame);
     void node_fields(Frame& frame);
     void inner_fields(Frame& frame);
     void water_fields(Frame& frame);
+    void own_water_fields(Frame& frame);
 
     void remark_on_low_barriers(std::vector<std::string>& remarks) const;
 
     Raster bed_;
     std::vector<Barrier> barriers_;
     double water_density_ = 0.0;
+    bool solids_;  ///< otherwise there is water alone
+    bool inflows_;
     std::unique_ptr<StructuredFlow> alone_;  ///< of a dry run
     std::unique_ptr<TwoPhaseFlow> both_;     ///< of one with water
     StructuredMap map_;

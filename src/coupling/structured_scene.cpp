@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "coupling/structured_run.h"
+#include "coupling/water_sources.h"
 #include "mpm/stencil.h"
 #include "particles/bed_points.h"
 
@@ -16,7 +17,10 @@ namespace {
 class Terrain {
 public:
     Terrain(const Scene& scene)
-        : bed_(scene.bed), holes_(scene.holes.nodes), gravity_(scene.gravity), unrolled_(scene.structure->unrolled) {}
+        : bed_(scene.bed),
+          holes_(scene.holes.nodes),
+          gravity_(scene.gravity),
+          unrolled_(scene.structure && scene.structure->unrolled) {}
 
     GroundGravity operator()(double x, double y) const {
         const GridGeometry& g = bed_.geometry;
@@ -132,9 +136,20 @@ std::function<BedCurvature(double x, double y)> curvature_of(const StructuredSce
 
 }  // namespace
 
+namespace {
+
+/// Of water alone: columns that are never there, and so pass no sound on.
+Structure no_structure() {
+    Structure none;
+    none.share = 0.0, none.hydrostatic = true;
+    return none;
+}
+
+}  // namespace
+
 StructuredScene structured_scene(const Scene& scene) {
-    expect(scene.structure.has_value(), "a structured run has a structure");
-    const Structure& of = *scene.structure;
+    expect(scene.structure || scene.water, "a structured run has a structure, or water alone");
+    const Structure of = scene.structure ? *scene.structure : no_structure();
     StructuredScene s;
     s.grid = scene.bed.geometry;
     s.ground = Terrain(scene);
@@ -150,6 +165,7 @@ StructuredScene structured_scene(const Scene& scene) {
     s.cfl = of.cfl;
     if (scene.sides == Sides::wall) add_walls(s.grid, s.obstacles);
     for (const Barrier& barrier : scene.barriers) s.obstacles.push_back(box_of(barrier));
+    if (!scene.structure) return s;  // all that is released is water
     const Seeds& seeds = scene.particles;
     s.confined = of.confined;
     const double solid = 1.0 - (scene.water ? scene.water->share : 0.0);
@@ -161,10 +177,22 @@ StructuredScene structured_scene(const Scene& scene) {
 
 namespace {
 
-/// Depth and discharge of the water in the pores of the releases, spread as the columns are.
-class PoreWater {
+/// Depth and discharge of the water of the releases: in the pores of columns, spread as they are, or all of it.
+class ReleasedWater {
 public:
-    PoreWater(const Scene& scene) : g_(scene.bed.geometry), depth_(size()), qx_(size()), qy_(size()) {
+    ReleasedWater(const Scene& scene) : g_(scene.bed.geometry), depth_(size()), qx_(size()), qy_(size()) {
+        if (scene.structure)
+            spread(scene);
+        else
+            fill(scene);
+    }
+    WaterState at(std::size_t k) const {
+        const double h = depth_[k];
+        return h > 0.0 ? WaterState{h, qx_[k] / h, qy_[k] / h} : WaterState{};
+    }
+
+private:
+    void spread(const Scene& scene) {
         const Seeds& seeds = scene.particles;
         for (std::size_t p = 0; p < seeds.x.size(); ++p) {
             const Quadratic sx((seeds.x[p] - g_.x0) / g_.cell), sy((seeds.y[p] - g_.y0) / g_.cell);
@@ -179,12 +207,40 @@ public:
                 }
         }
     }
-    WaterState at(std::size_t k) const {
-        const double h = depth_[k];
-        return h > 0.0 ? WaterState{h, qx_[k] / h, qy_[k] / h} : WaterState{};
+    /// Each particle's volume over the square around it, shared by the cells there: edges stay sharp. Outer cells go on beyond
+    /// their nodes, where no particle is, and are as deep there. A release up to one level within its shore is at that level
+    /// in each cell, so that it rests.
+    void fill(const Scene& scene) {
+        const Seeds& seeds = scene.particles;
+        for (std::size_t p = 0; p < seeds.x.size(); ++p) {
+            const double half = 0.5 * seeds.size[p] / g_.cell, h = seeds.volume[p] / (g_.cell * g_.cell);
+            for_each_cell((seeds.y[p] - g_.y0) / g_.cell, half, g_.ny, [&](Index j, double share_y) {
+                for_each_cell((seeds.x[p] - g_.x0) / g_.cell, half, g_.nx, [&](Index i, double share_x) {
+                    const std::size_t k = static_cast<std::size_t>(j * g_.nx + i);
+                    const double w = share_x * share_y * h;
+                    depth_[k] += w, qx_[k] += w * seeds.vx[p], qy_[k] += w * seeds.vy[p];
+                });
+            });
+        }
+        for (Index j = 0; j < g_.ny; ++j)
+            for (Index i = 0; i < g_.nx; ++i) {
+                const double shares = (i == 0 || i == g_.nx - 1 ? 2.0 : 1.0) * (j == 0 || j == g_.ny - 1 ? 2.0 : 1.0);
+                const std::size_t k = static_cast<std::size_t>(j * g_.nx + i);
+                depth_[k] *= shares, qx_[k] *= shares, qy_[k] *= shares;
+            }
+        for (std::size_t k = 0; scene.still_surface && k < depth_.size(); ++k)
+            if (depth_[k] > 0.0) depth_[k] = std::max(0.0, *scene.still_surface - scene.bed.values[k]);
     }
-
-private:
+    /// Cells that [at - half, at + half] lies in, all in cells, with their shares of it.
+    template <class Each>
+    static void for_each_cell(double at, double half, Index count, Each&& each) {
+        const double low = at - half, high = at + half;
+        for (auto n = static_cast<Index>(std::floor(low + 0.5)); static_cast<double>(n) - 0.5 < high; ++n) {
+            const double middle = static_cast<double>(n),
+                         part = std::min(high, middle + 0.5) - std::max(low, middle - 0.5);
+            if (part > 0.0) each(std::clamp<Index>(n, 0, count - 1), part / (high - low));
+        }
+    }
     std::size_t size() const { return static_cast<std::size_t>(g_.size()); }
     GridGeometry g_;
     std::vector<double> depth_, qx_, qy_;
@@ -210,10 +266,30 @@ std::vector<double> depths_of(const StructuredScene& columns) {
 
 }  // namespace
 
+namespace {
+
+/// Where water comes in and goes out.
+void set_edges(const Scene& scene, WaterScene& w) {
+    using Is = WaterPhase::Side::Is;
+    const WaterPhase& of = *scene.water;
+    w.sides.fill(scene.sides == Sides::wall ? WaterSide::wall : WaterSide::open);
+    if (of.lake.empty()) w.level = of.level;
+    for (std::size_t side = 0; side < w.sides.size(); ++side) {
+        const WaterPhase::Side& given = of.sides[side];
+        if (given.is == Is::wall) w.sides[side] = WaterSide::wall;
+        if (given.is == Is::level) w.sides[side] = WaterSide::level, w.side_levels[side] = given.level;
+        if (given.is == Is::free) w.sides[side] = WaterSide::free;
+    }
+    w.sources = water_sources(scene);
+}
+
+}  // namespace
+
 TwoPhaseScene two_phase_scene(const Scene& scene) {
     const WaterPhase& of = *scene.water;
     TwoPhaseScene s;
     s.columns = structured_scene(scene);
+    s.alone = !scene.structure;
     s.exchange = of.exchange;
     WaterScene& w = s.water;
     const GridGeometry g = w.grid = scene.bed.geometry;
@@ -228,11 +304,11 @@ TwoPhaseScene two_phase_scene(const Scene& scene) {
         return std::isfinite(z) ? z : highest;
     };
     const auto bound = std::make_shared<std::vector<double>>(of.level ? depths_of(s.columns) : std::vector<double>{});
-    const auto pores = std::make_shared<PoreWater>(scene);
-    w.start = [bound, pores, node, bed = w.bed, level = of.level](double x, double y) {
+    const auto released = std::make_shared<ReleasedWater>(scene);
+    w.start = [bound, released, node, bed = w.bed, level = of.level, lake = of.lake](double x, double y) {
         const std::size_t k = node(x, y);
-        WaterState state = pores->at(k);
-        if (level && *level > bed(x, y) + (*bound)[k] + state.depth)
+        WaterState state = released->at(k);
+        if (level && (lake.empty() || lake[k]) && *level > bed(x, y) + (*bound)[k] + state.depth)
             state = {*level - bed(x, y) - (*bound)[k], 0.0, 0.0};
         return state;
     };
@@ -242,8 +318,7 @@ TwoPhaseScene two_phase_scene(const Scene& scene) {
         return [&rate, node](double x, double y) { return rate.values[node(x, y)]; };
     };
     w.rain = on_nodes(of.rain), w.infiltration = on_nodes(of.infiltration);
-    w.level = of.level;
-    w.sides.fill(scene.sides == Sides::wall ? WaterSide::wall : WaterSide::open);
+    set_edges(scene, w);
     if (s.columns.curved) w.curvature = curvature_of(s.columns);
     w.friction = of.friction, w.viscosity = of.viscosity;
     w.gravity = scene.gravity;

@@ -18,8 +18,10 @@ double confined_volume(const StructuredFlow& columns) {
 
 }  // namespace
 
-TwoPhaseFlow::TwoPhaseFlow(const TwoPhaseScene& scene) : columns_(scene.columns), water_(scene.water) {
+TwoPhaseFlow::TwoPhaseFlow(const TwoPhaseScene& scene)
+    : columns_(scene.columns), water_(scene.water), alone_(scene.alone) {
     expect(scene.columns.grid == scene.water.grid, "columns and water share a grid");
+    expect(!alone_ || scene.columns.points.x.empty(), "water alone has no columns beside it");
     FreeWater water{
         scene.exchange, TwoPhaseDrag(scene.exchange.material), nullptr, nullptr, nullptr, nullptr, 0.0, {}, {}};
     water_.lend(water);
@@ -80,6 +82,12 @@ double TwoPhaseFlow::longest_step() const {
 void TwoPhaseFlow::advance(double until) {
     const double longest = step_of_columns();
     water_.advance(longest > 0.0 ? std::min(until, time() + longest) : until);
+    if (!alone_) move_columns();
+    update_totals();
+}
+
+/// To the water's time.
+void TwoPhaseFlow::move_columns() {
     const double end = water_.status().time;
     reached_tiles_ = columns_.body().active.work;
     while (columns_.status().time < end) {
@@ -89,7 +97,6 @@ void TwoPhaseFlow::advance(double until) {
     columns_.sample();
     water_.take_changes(reached_tiles_);
     confine();
-    update_totals();
 }
 
 void TwoPhaseFlow::touch(const std::vector<Index>& tiles) {
@@ -147,7 +154,7 @@ double TwoPhaseFlow::confined() const { return confined_volume(columns_); }
 double TwoPhaseFlow::volume_residual() const {
     const WaterLedger& l = water_.status().ledger;
     return confined_volume(columns_) + columns_.status().confined_left + water_.status().volume + l.left +
-           l.infiltrated - l.rained - l.entered - volume_given_;
+           l.infiltrated - l.rained - l.entered - l.fed - volume_given_;
 }
 
 }  // namespace frana

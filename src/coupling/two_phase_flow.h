@@ -1,5 +1,6 @@
 #pragma once
-// Structured columns and free water on one grid: what a mass of rock and water does as it breaks and drains.
+// Structured columns and free water on one grid: what a mass of rock and water does as it breaks and drains. Or the water
+// alone.
 #include "structured/structured_flow.h"
 #include "water/water_flow.h"
 
@@ -9,6 +10,7 @@ struct TwoPhaseScene {
     StructuredScene columns;
     WaterScene water;  ///< on the same grid; its depth at the start is free water, above the columns where both are
     WaterExchange exchange;
+    bool alone = false;  ///< there are no columns, nor will be
 };
 
 /// Steps of the water, each followed by as many of the columns as elastic waves ask for. In those the water stands still
@@ -25,7 +27,9 @@ public:
     /// The columns' timings() tell CPU time too from now on.
     void count_cpu_time() { columns_.count_cpu_time(); }
     const WaterFlow& water() const { return water_; }
-    double time() const { return columns_.status().time; }
+    double time() const { return water_.status().time; }
+    /// Whether there is the water only: the columns then take no steps.
+    bool alone() const { return alone_; }
     /// Steps of the columns for each of the water, so far.
     double sub_cycles() const;
     /// Water now, confined and free, and lost, less what was given [m^3]: round-off
@@ -41,6 +45,7 @@ public:
     void serialize(Archive& archive);
 
 private:
+    void move_columns();
     void confine();
     void mix();
     void touch(const std::vector<Index>& tiles);
@@ -49,6 +54,7 @@ private:
 
     StructuredFlow columns_;
     WaterFlow water_;
+    bool alone_;
     std::vector<Index> confined_;       ///< tiles where the water lies on columns
     std::vector<Index> reached_tiles_;  ///< tiles where columns were since the last step of the water
     std::vector<Index> scratch_;

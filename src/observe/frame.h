@@ -114,6 +114,7 @@ struct WaterBudget {
     double released = 0.0;                               ///< by what broke, since the start [m3]
     double rained = 0.0, infiltrated = 0.0, left = 0.0;  ///< the last also within columns [m3]
     double entered = 0.0;                                ///< from a lake beyond open sides [m3]
+    double fed = 0.0;                                    ///< by inflows [m3]
     double infiltrated_mass = 0.0;                       ///< [kg]
     double solids_left = 0.0;                            ///< mass of grains that left within columns [kg]
     double residual = 0.0;                               ///< of all these: round-off [m3]

@@ -24,8 +24,10 @@ std::size_t terminal_width() {
 double volume_of(const Status& now, double density) { return (now.mass - now.water) / density + now.water_volume; }
 
 std::string state_text(const Status& now, double density) {
-    return fmt::format("dt {:.2g} s  {} particles  {:.4g} m3  max {:.3g} m/s", now.dt, now.particles,
-                       volume_of(now, density), now.max_speed);
+    const std::string particles =
+        now.particles == 0 && now.water > 0.0 ? "" : fmt::format("{} particles  ", now.particles);
+    return fmt::format("dt {:.2g} s  {}{:.4g} m3  max {:.3g} m/s", now.dt, particles, volume_of(now, density),
+                       now.max_speed);
 }
 
 /// JSON has no infinity and no NaN.

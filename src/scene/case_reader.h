@@ -37,6 +37,7 @@ private:
     void drop_unused_from_file(const Parameter& switched);
 
     void check_tables();
+    void check_sources();
     void check_missing(const std::string& prefix, const std::string& table);
     void check_alternatives(const std::string& prefix, const std::string& table);
     void check_unused(const std::string& prefix, const std::string& table);

@@ -62,11 +62,21 @@ void CaseReader::check_rules() {
     check_combinations();
 }
 
+/// Something has to be there, or to come: free water also by its level and as rain.
+void CaseReader::check_sources() {
+    for (const char* table : {"release", "inflow"})
+        if (case_.count(table) > 0 || misread_.count(table)) return;
+    const bool free = case_.word("water.model") == "free";
+    for (const char* key : {"water.level", "water.rain"})
+        if (free && (case_.given(key) || misread_.count(key))) return;
+    problems_.add(1, place_of("release", 1), "not given",
+                  free ? "expected at least one [[release]] or [[inflow]], or water.level or water.rain"
+                       : "expected at least one [[release]]",
+                  "add [[release]] with outline and depth below");
+}
+
 void CaseReader::check_tables() {
-    if (case_.count("release") == 0 && case_.count("inflow") == 0 && !misread_.count("release") &&
-        !misread_.count("inflow"))
-        problems_.add(1, place_of("release", 1), "not given", "expected at least one [[release]]",
-                      "add [[release]] with outline and depth below");
+    check_sources();
     std::set<std::string> done;
     for (const Parameter& parameter : parameters()) {
         const std::string table = parameter.table();

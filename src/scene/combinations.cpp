@@ -69,29 +69,32 @@ bool holds(const CaseFile& file, const Values& values, const std::string& key) {
 Values is(const char* key, std::vector<std::string> words) { return {key, Are::words, std::move(words)}; }
 Values is_not(const char* key, std::vector<std::string> words) { return {key, Are::others, std::move(words)}; }
 
-/// Keys of the depth-averaged flow's scheme that structured columns have no use for.
-void add_scheme_of_structure(std::vector<Combination>& table) {
-    const Values structure = is_not("material.structure.law", {"none"});
-    table.push_back({{"scheme.cfl", Are::given},
-                     {structure},
-                     "expected none: structured columns take their own steps",
-                     "remove it, and give material.structure.cfl"});
-    const auto unused = [&](Values refused, const std::string& expected) {
-        table.push_back({std::move(refused), {structure}, "expected " + expected, "remove it"});
+/// A model that has no use for keys of the depth-averaged flow's scheme.
+struct OtherModel {
+    Values with;
+    std::vector<Values> also;
+    std::string who, said, own_cfl;
+};
+
+void add_scheme_of(std::vector<Combination>& table, const OtherModel& model) {
+    const auto unused = [&](Values refused, const std::string& expected, const std::string& way_out = "remove it") {
+        table.push_back({std::move(refused), {model.with}, "expected " + expected, way_out, model.said, model.also});
     };
-    unused(is_not("scheme.transfer", {"tpic"}), "\"tpic\", the only one that structured columns have");
-    unused(is("scheme.precision", {"float"}), "\"double\", the only one that structured columns have");
-    unused({"scheme.lateral_drag", Are::above_zero}, "0: structured columns have no such drag");
-    unused({"scheme.merge", Are::on}, "false: structured columns are never merged");
-    unused({"scheme.wave_shift", Are::above_zero}, "0: structured columns stay where their velocities take them");
-    unused({"scheme.mass_fit", Are::on}, "false: structured columns have their own mass");
-    unused({"scheme.strain_rate_floor", Are::given}, "none: structured columns have no rheology");
-    unused({"scheme.stress_cap", Are::given}, "none: structured columns have no rheology");
+    unused({"scheme.cfl", Are::given}, "none: " + model.who + " takes its own steps", model.own_cfl);
+    unused(is_not("scheme.transfer", {"tpic"}), "\"tpic\": " + model.who + " has no other");
+    unused(is("scheme.precision", {"float"}), "\"double\": " + model.who + " has no other");
+    unused({"scheme.lateral_drag", Are::above_zero}, "0: " + model.who + " has no such drag");
+    unused({"scheme.merge", Are::on}, "false: " + model.who + " is never merged");
+    unused({"scheme.wave_shift", Are::above_zero}, "0: " + model.who + " stays where its velocity takes it");
+    unused({"scheme.mass_fit", Are::on}, "false: " + model.who + " has its own mass");
+    unused({"scheme.strain_rate_floor", Are::given}, "none: " + model.who + " has no rheology");
+    unused({"scheme.stress_cap", Are::given}, "none: " + model.who + " has no rheology");
 }
 
-/// What structured columns do not know of.
+/// What the depth-averaged flow alone knows of: neither structured columns nor free water do.
 void add_structure(std::vector<Combination>& table) {
-    const Values structure = is_not("material.structure.law", {"none"});
+    const Values structure = is_not("material.structure.law", {"none"}), free = is("water.model", {"free"});
+    const std::vector<Values> either = {structure, free};
     table.push_back({{"terrain.unrolled", Are::on},
                      {is("material.structure.law", {"none"})},
                      "expected it with structured columns only",
@@ -104,38 +107,61 @@ void add_structure(std::vector<Combination>& table) {
                      {is("terrain.curvature", {"full"})},
                      "expected \"none\" there: coordinates along the ground know no bend",
                      "remove one of them"});
-    table.push_back({is("terrain.curvature", {"inertia"}),
-                     {structure},
+    table.push_back({is("terrain.curvature", {"inertia"}), either,
                      "expected \"full\" or \"none\": grains press on a bend with all of their weight there",
                      "choose one of them"});
-    table.push_back({is_not("terrain.model", {"steep"}), {structure}, "expected \"steep\"", "remove it"});
-    table.push_back({is_not("scheme.preset", {"default"}), {structure}, "expected \"default\"", "remove it"});
-    table.push_back({is_not("scheme.shape", {"quadratic"}), {structure}, "expected \"quadratic\"", "remove it"});
+    table.push_back({is_not("terrain.model", {"steep"}), either, "expected \"steep\"", "remove it"});
+    table.push_back({is_not("scheme.preset", {"default"}), either, "expected \"default\"", "remove it"});
+    table.push_back({is_not("scheme.shape", {"quadratic"}), either, "expected \"quadratic\"", "remove it"});
     table.push_back({{"inflow", Are::tables},
                      {structure},
-                     "expected none: material comes in to the depth-averaged flow alone",
-                     "remove it, or give a [[release]]"});
+                     "expected none: what comes in is the depth-averaged flow or free water",
+                     "remove it, give a [[release]], or set water.model = \"free\" for water that comes in",
+                     {},
+                     {is("water.model", {"none"})}});
     table.push_back({{"section", Are::tables},
-                     {structure},
+                     either,
                      "expected none: what passes a line is known of the depth-averaged flow alone",
                      "remove it, or use [[gauge]] or [[profile]]"});
     table.push_back({{"stage", Are::tables},
-                     {structure},
-                     "expected none: structured columns go from the start to the end",
+                     either,
+                     "expected none: structured columns and free water go from the start to the end",
                      "remove it"});
+}
+
+/// Of what flows as water alone: keys of solids, and of the depth-averaged flow's material.
+void add_water_alone(std::vector<Combination>& table) {
+    const OtherModel water{is("water.model", {"free"}),
+                           {is("material.structure.law", {"none"})},
+                           "water",
+                           " with water.model = \"free\" and without material.structure",
+                           "remove it"};
+    const auto refuse = [&](Values refused, const std::string& expected, const char* way_out) {
+        table.push_back({std::move(refused), {water.with}, expected, way_out, water.said, water.also});
+    };
+    refuse({"material.density", Are::given}, "expected none: what is released and comes in is water",
+           "remove it, and give water.density if it is not 1000");
+    refuse(is_not("material.bed.law", {"none"}), "expected \"none\": water.friction brakes water",
+           "remove it, and give water.friction");
+    refuse(is_not("material.rheology.law", {"none"}), "expected \"none\": water has the viscosity of water.viscous",
+           "remove it, and give water.viscous");
+    refuse({"water.share", Are::above_zero}, "expected 0: all that is released is water", "remove it");
+    const auto of_solids = [&](Values refused, const std::string& usual) {
+        refuse(std::move(refused), "expected " + usual + ": there are no solids for the water to meet",
+               "remove it, or give the mass a structure");
+    };
+    for (const char* key : {"water.grain_diameter", "water.block_diameter", "water.drag_power", "water.pore_pressure",
+                            "water.void_ratio"})
+        of_solids({key, Are::given}, "none");
+    of_solids(is_not("water.drag", {"split"}), "\"split\"");
+    of_solids(is_not("water.virtual_mass", {"none"}), "\"none\"");
+    of_solids({"water.solid_gradient", Are::on}, "false");
+    add_scheme_of(table, water);
 }
 
 /// What free water, and water within a structure, do not know of.
 void add_water(std::vector<Combination>& table) {
     const Values free = is("water.model", {"free"});
-    const char* const solids =
-        "add [material.structure] (law, cohesion, friction_angle_deg, young_modulus), or use material.bed and "
-        "material.rheology for one phase";
-    table.push_back({free,
-                     {is("material.structure.law", {"none"})},
-                     "expected solids for the water to be beside",
-                     solids,
-                     " without material.structure"});
     table.push_back({{"barrier", Are::tables},
                      {free},
                      "expected none, since water does not know them",
@@ -172,10 +198,11 @@ void add_erodible_bed(std::vector<Combination>& table) {
                      {erodible},
                      "expected \"default\" or \"fast\": particles of that preset carry a depth that no mass can join",
                      "remove it, or the erodible bed"});
-    table.push_back({is_not("material.structure.law", {"none"}),
-                     {erodible},
-                     "expected \"none\": a mass that holds together, and water beside it, take up no bed",
-                     "remove one of them"});
+    for (const Values& other : {is_not("material.structure.law", {"none"}), is("water.model", {"free"})})
+        table.push_back({other,
+                         {erodible},
+                         "expected \"none\": a mass that holds together, and free water, take up no bed",
+                         "remove one of them"});
     table.push_back({{"stage", Are::tables},
                      {erodible},
                      "expected none: points in 3D take up no bed",
@@ -198,10 +225,11 @@ void add_deposits(std::vector<Combination>& table) {
          {deposits},
          "expected \"default\" or \"fast\": particles of that preset carry a depth that no bed can take over",
          "remove it, or the deposition"});
-    table.push_back({is_not("material.structure.law", {"none"}),
-                     {deposits},
-                     "expected \"none\": a mass that holds together, and water beside it, leave no bed behind",
-                     "remove one of them"});
+    for (const Values& other : {is_not("material.structure.law", {"none"}), is("water.model", {"free"})})
+        table.push_back({other,
+                         {deposits},
+                         "expected \"none\": a mass that holds together, and free water, leave no bed behind",
+                         "remove one of them"});
     table.push_back({{"stage", Are::tables},
                      {deposits},
                      "expected none: points in 3D leave no bed behind",
@@ -224,10 +252,11 @@ void add_forest(std::vector<Combination>& table) {
          {forest},
          "expected \"default\" or \"fast\": particles of that preset carry a depth that no bed can take over",
          "remove it, or the forest"});
-    table.push_back({is_not("material.structure.law", {"none"}),
-                     {forest},
-                     "expected \"none\": a mass that holds together, and water beside it, leave nothing in a forest",
-                     "remove one of them"});
+    for (const Values& other : {is_not("material.structure.law", {"none"}), is("water.model", {"free"})})
+        table.push_back({other,
+                         {forest},
+                         "expected \"none\": a mass that holds together, and free water, leave nothing in a forest",
+                         "remove one of them"});
     table.push_back({{"stage", Are::tables},
                      {forest},
                      "expected none: points in 3D leave nothing in a forest",
@@ -284,9 +313,9 @@ void add_late_releases(std::vector<Combination>& table) {
     for (const Values& late : {Values{"release.at", Are::above_zero}, Values{"release.when_hit", Are::on}}) {
         const std::string none = late.are == Are::on ? "expected false: " : "expected 0: ";
         table.push_back({late,
-                         {is_not("material.structure.law", {"none"})},
+                         {is_not("material.structure.law", {"none"}), is("water.model", {"free"})},
                          none + "what holds together, and water, begin at the start",
-                         "remove it, or the structure"});
+                         "remove it, or the structure or the water; water may come in later by [[inflow]]"});
         table.push_back({late,
                          {{"stage", Are::tables}},
                          none + "releases enter the depth-averaged flow alone",
@@ -302,6 +331,7 @@ void add_late_releases(std::vector<Combination>& table) {
 std::string with_text(const Combination& row) {
     std::string text;
     for (const Values& values : row.with) text += (text.empty() ? "" : ", or ") + values.text();
+    for (const Values& values : row.also) text += " and " + values.text();
     return text;
 }
 
@@ -351,15 +381,21 @@ std::string Values::text() const {
     }
 }
 
+bool Combination::applies(const CaseFile& file) const {
+    const auto holds = [&](const Values& values) { return values.hold(file); };
+    return std::any_of(with.begin(), with.end(), holds) && std::all_of(also.begin(), also.end(), holds);
+}
+
 bool Combination::found(const CaseFile& file) const {
     const std::string key = refused.key_in(file);
     if (key.empty() || (refused.are != Are::tables && !file.given(key))) return false;
-    return std::any_of(with.begin(), with.end(), [&](const Values& values) { return values.hold(file); });
+    return applies(file);
 }
 
 std::string Combination::found_text(const CaseFile& file) const {
-    const std::string beyond =
-        said.empty() ? fmt::format(" with {} = {}", with.front().key, value_text(file, with.front())) : said;
+    const auto holds = std::find_if(with.begin(), with.end(), [&](const Values& values) { return values.hold(file); });
+    const Values& other = holds != with.end() ? *holds : with.front();
+    const std::string beyond = said.empty() ? fmt::format(" with {} = {}", other.key, value_text(file, other)) : said;
     return "found " + value_text(file, refused) + beyond;
 }
 
@@ -368,8 +404,13 @@ const std::vector<Combination>& combinations() {
         std::vector<Combination> table;
         add_schemes(table);
         add_structure(table);
-        add_scheme_of_structure(table);
+        add_scheme_of(table, {is_not("material.structure.law", {"none"}),
+                              {},
+                              "a structured column",
+                              {},
+                              "remove it, and give material.structure.cfl"});
         add_water(table);
+        add_water_alone(table);
         add_erodible_bed(table);
         add_deposits(table);
         add_forest(table);
@@ -387,8 +428,7 @@ const std::vector<Combination>& combinations() {
 
 bool refused_if_given(const CaseFile& file, const std::string& key) {
     return std::any_of(combinations().begin(), combinations().end(), [&](const Combination& row) {
-        return row.refused.key == key && (row.refused.are == Are::given || row.refused.hold(file)) &&
-               std::any_of(row.with.begin(), row.with.end(), [&](const Values& values) { return values.hold(file); });
+        return row.refused.key == key && (row.refused.are == Are::given || row.refused.hold(file)) && row.applies(file);
     });
 }
 

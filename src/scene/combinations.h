@@ -33,8 +33,11 @@ struct Combination {
     Values refused;
     std::vector<Values> with;  ///< any of these
     std::string expected, way_out;
-    std::string said = {};  ///< `with` in the message where it is not " with KEY = VALUE"
+    std::string said = {};          ///< `with` in the message where it is not " with KEY = VALUE"
+    std::vector<Values> also = {};  ///< and all of these
 
+    /// Whether the case has what it is refused with.
+    bool applies(const CaseFile& file) const;
     bool found(const CaseFile& file) const;
     /// "found "cubic" with scheme.preset = "paper"".
     std::string found_text(const CaseFile& file) const;

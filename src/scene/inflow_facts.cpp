@@ -30,10 +30,11 @@ InflowFacts facts_of(const Inflow& of, double gravity) {
 std::string inflow_sentence(const std::string& name, const InflowFacts& f) {
     if (f.area > 0.0)
         return fmt::format(
-            "inflow {}: {:.6g} m3 until {:.6g} s, at most {:.4g} m3/s at {:.6g} s; at rest over {:.5g} m2, in layers "
-            "of "
-            "{:.3g} m; in all a depth of {:.3g} m there, if none of it flowed off",
-            name, f.volume, f.end, f.peak, f.peak_time, f.area, f.layer, f.volume / f.area);
+            "inflow {}: {:.6g} m3 until {:.6g} s, at most {:.4g} m3/s at {:.6g} s; at rest over {:.5g} m2{}; in all a "
+            "depth "
+            "of {:.3g} m there, if none of it flowed off",
+            name, f.volume, f.end, f.peak, f.peak_time, f.area,
+            f.layer > 0.0 ? fmt::format(", in layers of {:.3g} m", f.layer) : "", f.volume / f.area);
     std::string text = fmt::format(
         "inflow {}: {:.6g} m3 until {:.6g} s, at most {:.4g} m3/s at {:.6g} s; the line is {:.4g} m wide on a slope of "
         "{:.3g} "

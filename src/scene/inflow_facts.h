@@ -12,7 +12,7 @@ struct InflowFacts {
     double end = 0.0;                    ///< of the table [s]
     double width = 0.0;                  ///< of the line [m]
     double area = 0.0;                   ///< [m2]; above 0: there is no line, and what follows is 0
-    double layer = 0.0;                  ///< depth that comes in at once over an area [m]
+    double layer = 0.0;                  ///< depth that comes in at once over an area; 0: free water [m]
     double slope_deg = 0.0;              ///< of the bed there; below 0: it climbs [degrees]
     double thickness = 0.0;              ///< normal to the bed, at the peak [m]
     double speed = 0.0;                  ///< along the bed, at the peak [m/s]

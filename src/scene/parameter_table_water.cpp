@@ -1,8 +1,26 @@
-// The keys of [water]: free water beside solids that hold together.
+// The keys of [water]: free water, beside solids that hold together or alone.
 #include "law/free_water.h"
 #include "scene/parameter_makers.h"
 
 namespace frana {
+
+namespace {
+
+void add_water_sides(Table& table) {
+    using namespace rows;
+    for (const char* side : {"west", "east", "south", "north"}) {
+        Parameter parameter =
+            make("", Kind::number_or_choice, "m",
+                 "that side of the terrain for free water: wall; free: water leaves as it flows, and none comes in; or "
+                 "the elevation of a lake beyond, which holds the water there and flows in where it stands higher");
+        parameter.key = std::string("water.sides.") + side;
+        parameter.range = any_number;
+        parameter.choices = {"wall", "free"};
+        table.push_back(absent(with(parameter, "water.model", {"free"}), "boundary.sides decides"));
+    }
+}
+
+}  // namespace
 
 void add_water(Table& table) {
     using namespace rows;
@@ -10,13 +28,20 @@ void add_water(Table& table) {
     const WaterExchange usual;
     const auto used = [&](Parameter parameter) { return with(std::move(parameter), model, {"free"}); };
     table.push_back(choice(model, {"none", "free"}, "none",
-                           "free: water on the grid that drags, bears and drains the columns of material.structure"));
+                           "free: water on the grid. With material.structure it drags, bears and drains its columns; "
+                           "without, all that is released and comes in is water"));
     table.push_back(
         used(number("water.share", "1", {0.0, 1.0, false, true}, 0.0,
                     "share of each release's volume that is free water in its pores; the columns have the rest")));
     table.push_back(absent(used(number("water.level", "m", any_number,
-                                       "elevation of a lake at rest at the start, wherever the ground lies lower")),
+                                       "elevation of a lake at rest at the start, wherever the ground lies lower; it "
+                                       "goes on beyond open sides that it meets")),
                            "no lake"));
+    table.push_back(absent(used(make("water.level_within", Kind::path, "",
+                                     "polygons that lake lies within, any OGR vector file; beyond sides it does not "
+                                     "go on then")),
+                           "wherever the ground is lower"));
+    add_water_sides(table);
     const auto rate = [&](const char* key, const char* meaning) {
         Parameter parameter = make(key, Kind::number_or_path, "m/s", meaning);
         parameter.range = not_negative;

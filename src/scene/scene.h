@@ -85,7 +85,7 @@ struct Section {
     bool to_right = true;  ///< what goes from its left to its right counts as positive; otherwise the other way
 };
 
-/// Material that comes in through a line, or at rest over an area. Between the times of its table all is linear, before and
+/// Material that comes in through a line, or at rest over an area; water where there is free water. Between the times of its table all is linear, before and
 /// after it nothing comes.
 struct Inflow {
     /// A patch of the area.
@@ -189,13 +189,20 @@ struct Structure {
     bool hydrostatic = false;  ///< grains push sideways as they do down, K = 1; otherwise by Rankine's Ka to Kp
 };
 
-/// Free water on the grid beside the columns of a structure (coupling/two_phase_flow.h).
+/// Free water on the grid: beside the columns of a structure (coupling/two_phase_flow.h), or alone, of the releases too.
 struct WaterPhase {
+    /// What is beyond a side of the terrain: what Scene::sides says, a wall, nothing that comes in, or water at a level.
+    struct Side {
+        enum class Is { as_sides, wall, free, level } is = Is::as_sides;
+        double level = 0.0;  ///< [m]
+    };
     WaterExchange exchange;
     WaterFriction friction;
     WaterViscosity viscosity;
     double share = 0.0;           ///< of the releases' volume [1]
     std::optional<double> level;  ///< of a lake at rest [m]
+    std::vector<char> lake;       ///< 1 on nodes of the terrain where that lake may be; empty: on all
+    std::array<Side, 4> sides{};  ///< west, east, south, north
     Raster rain, infiltration;    ///< on the nodes of the terrain, without values where there is none [m/s]
 };
 
@@ -313,7 +320,7 @@ struct Scene {
     std::optional<Polygons> survey;  ///< surveyed footprint, to compare with
     std::vector<Barrier> barriers;
     std::optional<Structure> structure;    ///< when the material holds together
-    std::optional<WaterPhase> water;       ///< beside a structure
+    std::optional<WaterPhase> water;       ///< beside a structure, or alone
     std::optional<ErodibleBed> erodible;   ///< nothing: the bed is rock
     std::optional<Deposition> deposition;  ///< nothing: none
     std::optional<Forest> forest;          ///< nothing: no trees take mass out

@@ -15,6 +15,7 @@ namespace frana {
 namespace {
 
 constexpr Index kReach = 6;         ///< cells; what holds the flow up behind the line takes so many
+constexpr Index kWaterReach = 0;    ///< free water comes in at the cells that the line crosses
 constexpr double kDeepest = 100.0;  ///< more than so much on all of the terrain is a mistake [m]
 /// Over an area a row is complete when so much has come, in cells: the step at the area's edge then hardly pushes, and a
 /// point is no crumb. A slow source, whose whole depth is little more, comes in as so many layers at least.
@@ -25,7 +26,13 @@ constexpr Index kMostParts = 4000;  ///< of all
 class InflowReader {
 public:
     InflowReader(const CaseFile& file, Index i, const GisReader& reader, Scene& scene)
-        : case_(file), prefix_(fmt::format("inflow.{}.", i)), reader_(reader), scene_(scene), bed_(scene.bed) {}
+        : case_(file),
+          prefix_(fmt::format("inflow.{}.", i)),
+          reader_(reader),
+          scene_(scene),
+          bed_(scene.bed),
+          water_(file.word("water.model") == "free"),
+          reach_(water_ ? kWaterReach : kReach) {}
 
     /// Nothing when something is wrong.
     std::optional<Inflow> read(Problems& problems) {
@@ -77,7 +84,7 @@ private:
                 "inflow {}: the velocities of its table are not used; over an area it comes in at rest", inflow_.name));
         inflow_.time = table.time, inflow_.discharge = table.discharge;
         inflow_.speed.assign(table.time.size(), 0.0);
-        inflow_.layer = layer_of(table.volume() / inflow_.area);
+        inflow_.layer = water_ ? 0.0 : layer_of(table.volume() / inflow_.area);
         return inflow_;
     }
 
@@ -155,21 +162,31 @@ private:
             const auto parts = static_cast<Index>(std::ceil(2.0 * piece.norm() / g.cell));
             for (Index part = 0; part <= parts; ++part) {
                 const Vec2 at = inflow_.line[k] + static_cast<double>(part) / static_cast<double>(parts) * piece;
-                const auto i = static_cast<Index>(std::lround((at.x() - g.x0) / g.cell));
-                const auto j = static_cast<Index>(std::lround((at.y() - g.y0) / g.cell));
-                for (Index dj = -kReach; dj <= kReach; ++dj)
-                    for (Index di = -kReach; di <= kReach; ++di) require_node(i + di, j + dj, at);
+                const Index i = node_of(at.x(), g.x0, g.nx), j = node_of(at.y(), g.y0, g.ny);
+                for (Index dj = -reach_; dj <= reach_; ++dj)
+                    for (Index di = -reach_; di <= reach_; ++di) require_node(i + di, j + dj, at);
             }
         }
+    }
+
+    /// The nearest node. Cells of water reach as far as the pixels: what ends on their border is within.
+    Index node_of(double at, double start, Index count) const {
+        constexpr double kSlack = 1e-9;
+        const double cells = (at - start) / bed_.geometry.cell;
+        const bool on_border = cells + 0.5 > -kSlack && cells + 0.5 < static_cast<double>(count) + kSlack;
+        const auto nearest = static_cast<Index>(std::lround(cells));
+        return water_ && on_border ? std::clamp<Index>(nearest, 0, count - 1) : nearest;
     }
 
     void require_node(Index i, Index j, const Vec2& at) const {
         const GridGeometry& g = bed_.geometry;
         const bool inside = i >= 0 && j >= 0 && i < g.nx && j < g.ny;
         if (inside && !std::isnan(bed_.at(i, j))) return;
-        throw UserError(
-            fmt::format("found {:.10g}, {:.10g} {}; expected ground {} cells around the line; move it inwards", at.x(),
-                        at.y(), inside ? "beside nodata" : "outside of the terrain, or at its edge", kReach));
+        const std::string found = fmt::format("found {:.10g}, {:.10g} {}; expected ", at.x(), at.y(),
+                                              inside ? "beside nodata" : "outside of the terrain, or at its edge");
+        throw UserError(found +
+                        (water_ ? "a line on the terrain" : fmt::format("ground {} cells around the line", reach_)) +
+                        "; move it inwards");
     }
 
     /// Down the slope, or to the side where `towards` lies.
@@ -278,6 +295,16 @@ private:
         inflow_.time = std::move(time), inflow_.discharge = std::move(discharge);
     }
 
+    /// What holds the flow at an even speed. Water's friction is a bed law: Darcy and Weisbach's is Voellmy's drag alone, with
+    /// xi = 8 g / f.
+    BedLaw law() const {
+        if (!water_) return bed_law_at(scene_, inflow_.middle());
+        const WaterFriction of = water_friction(case_);
+        if (of.law == WaterFriction::Law::manning) return bed::Manning{of.coefficient};
+        if (of.law == WaterFriction::Law::none) return bed::None{};
+        return bed::Voellmy{0.0, 8.0 * scene_.gravity / of.coefficient};
+    }
+
     /// Along the bed [m/s].
     double normal_speed(double discharge) const {
         const char* const way_out = "give velocity = a number [m/s]";
@@ -288,8 +315,8 @@ private:
                 fmt::format("found velocity = \"normal\" on ground that rises by {:.3g} degrees; expected a slope "
                             "that the flow goes down; {}",
                             -degrees, way_out));
-        const bed::NormalFlow flow = bed::normal_flow(bed_law_at(scene_, inflow_.middle()), discharge / inflow_.width(),
-                                                      {inflow_.slope, scene_.gravity, scene_.density});
+        const bed::NormalFlow flow =
+            bed::normal_flow(law(), discharge / inflow_.width(), {inflow_.slope, scene_.gravity, scene_.density});
         if (flow.speed == 0.0)
             throw UserError(
                 fmt::format("found velocity = \"normal\" where the material stops on the slope of {:.3g} degrees; "
@@ -297,9 +324,10 @@ private:
                             degrees, way_out));
         if (std::isinf(flow.speed))
             throw UserError(
-                fmt::format("found velocity = \"normal\" with a bed law by which the flow gets faster for ever on "
-                            "{:.3g} degrees; expected one with drag, such as \"voellmy\" or \"manning\"; {}",
-                            degrees, way_out));
+                fmt::format("found velocity = \"normal\" with a {} by which the flow gets faster for ever on "
+                            "{:.3g} degrees; expected one with drag, such as {}; {}",
+                            water_ ? "water.friction" : "bed law", degrees,
+                            water_ ? "\"manning\" or \"darcy_weisbach\"" : "\"voellmy\" or \"manning\"", way_out));
         return flow.speed;
     }
 
@@ -308,6 +336,8 @@ private:
     const GisReader& reader_;
     Scene& scene_;
     const Raster& bed_;
+    bool water_;
+    Index reach_;
     Inflow inflow_;
 };
 

@@ -72,6 +72,14 @@ std::vector<Section> read_sections(const CaseFile& file, const GisReader& reader
 /// the scene's log.
 void read_inflows(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems);
 
+/// Whether a case has free water and nothing beside it: what it releases is water.
+inline bool water_alone(const CaseFile& file) {
+    return file.word("water.model") == "free" && file.word("material.structure.law") == "none";
+}
+
+/// Friction of free water at the bed.
+WaterFriction water_friction(const CaseFile& file);
+
 /// [material.structure] of a scene that has its terrain and its barriers. What does not fit together goes to `problems`.
 std::optional<Structure> read_structure(const CaseFile& file, const Scene& scene, Problems& problems);
 

@@ -107,7 +107,11 @@ void set_physics(const CaseFile& file, Scene& scene) {
     scene.stop_at_rest = file.flag("time.stop_at_rest");
     scene.rest_fraction = file.number("time.rest_fraction");
     scene.output = output_of(file);
-    if (!file.given("material.bed.law"))
+    if (water_alone(file)) {
+        scene.density = file.number("water.density");
+        if (file.word("water.friction") == "none")
+            scene.log.push_back("water.friction is not given: the bed is without friction");
+    } else if (!file.given("material.bed.law"))
         scene.log.push_back("material.bed.law is not given: the bed is without friction");
 }
 

@@ -108,6 +108,7 @@ std::string why_without(const Scene& scene, const std::string& field) {
     if (is({"damage", "cohesion"}) && !scene.structure)
         return "material.structure.law = \"none\" holds nothing together";
     if (is({"water_depth", "water_velocity"}) && !scene.water) return "there is no free water";
+    if (is({"water_depth", "water_velocity"}) && !scene.structure) return "all is water, and depth is the water's";
     if (is({"bed_change", "eroded_depth", "deposited_depth"}) && !scene.bed_changes()) return "the bed does not change";
     return "";
 }
@@ -134,9 +135,10 @@ void remark_on_terrain(const CaseFile& file, Scene& scene) {
 
 void remark_on_material(const CaseFile& file, Scene& scene) {
     const bool given = file.given("material.density");
-    remark_on(scene.log, given ? Remark::density : Remark::density_not_given, file.place("material.density"),
-              {file.number("material.density"), 0.0,
-               file.has("case.kind") ? " (case.kind = \"" + file.word("case.kind") + "\")" : ""});
+    if (!water_alone(file))
+        remark_on(scene.log, given ? Remark::density : Remark::density_not_given, file.place("material.density"),
+                  {file.number("material.density"), 0.0,
+                   file.has("case.kind") ? " (case.kind = \"" + file.word("case.kind") + "\")" : ""});
     const auto angle = [&](const std::string& key, bool tangent) {
         if (!file.given(key) || file.is_text(key)) return;
         const double value = file.number(key);
@@ -177,6 +179,7 @@ void remark_on_releases(const CaseFile& file, const std::vector<ReleaseSummary>&
     Index count = 0;
     for (const Seeds* seeds : scene.all_particles()) count += seeds->count();
     if (count == 0 && !scene.inflows.empty()) return;  // all is still to come in
+    if (scene.water && !scene.structure) return;       // which is on cells from the start
     remark_on(scene.log, Remark::few_particles, file.place("particles.per_cell"), {double(count)});
 }
 

@@ -3,47 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/discharge.h"
+
 namespace frana {
 namespace {
-
-/// Integrals over time, exact for a discharge and a speed that are linear between the times of a table.
-struct Through {
-    double time = 0.0;
-    double way = 0.0;       ///< of the speed [m]
-    double volume = 0.0;    ///< of the discharge [m3]
-    double moment = 0.0;    ///< of the discharge times the time [m3 s]
-    double momentum = 0.0;  ///< of the discharge times the speed [m4/s]
-
-    /// Goes on by `s` within the n-th interval of the table, from `since` after its beginning.
-    void go(const Inflow& of, std::size_t n, double since, double s) {
-        const double length = of.time[n + 1] - of.time[n];
-        const double dq = (of.discharge[n + 1] - of.discharge[n]) / length,
-                     dv = (of.speed[n + 1] - of.speed[n]) / length;
-        const double q = of.discharge[n] + dq * since, v = of.speed[n] + dv * since, at = of.time[n] + since;
-        const double more = s * (q + 0.5 * dq * s);
-        way += s * (v + 0.5 * dv * s);
-        volume += more;
-        moment += at * more + s * s * (0.5 * q + dq * s / 3.0);
-        momentum += s * (q * v + s * (0.5 * (q * dv + v * dq) + dq * dv * s / 3.0));
-        time = at + s;
-    }
-};
 
 /// Time in which something of speed v that grows by dv in each second goes so far; infinite: never.
 double time_for(double way, double v, double dv) {
     const double square = v * v + 2.0 * dv * way, sum = v + std::sqrt(std::max(square, 0.0));
     return square >= 0.0 && sum > 0.0 ? 2.0 * way / sum : std::numeric_limits<double>::infinity();
-}
-
-/// Of the table, up to a time [m3].
-double volume_until(const Inflow& of, double time) {
-    double sum = 0.0;
-    for (std::size_t n = 0; n + 1 < of.time.size() && of.time[n] < time; ++n) {
-        const double length = of.time[n + 1] - of.time[n], share = std::min(1.0, (time - of.time[n]) / length);
-        const double end = of.discharge[n] + share * (of.discharge[n + 1] - of.discharge[n]);
-        sum += 0.5 * share * length * (of.discharge[n] + end);
-    }
-    return sum;
 }
 
 /// Over an area the depth that has come goes on as the flow does through a line: a row is complete with its layer.

@@ -1,30 +1,64 @@
 #include "water/water_block.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace frana {
 namespace {
 
-/// The lake at its level, over ground as high as that of the last cell: waves that reach it go on.
-void lake_beyond(const WaterBody& body, WaterBlock& block, Index inside, Index step, Index room) {
-    const double ground = block.surface[inside] - block.depth[inside];
+/// A side of the grid, seen from the cells before it.
+struct Side {
+    std::size_t number;  ///< 0 to 3
+    double* normal;      ///< velocities of the block across it [m/s]
+    double outward;      ///< 1 or -1
+};
+
+/// Speed out of the grid of the water beyond a side that holds a level, `depth` deep there [m/s]. The invariant u + 2 c that
+/// comes out of the grid gives it, so that the side's depth is that of the level; none comes in faster than from rest.
+double speed_beyond(const WaterBlock& block, const Side& side, Index inside, double depth) {
+    const double g = block.normal_gravity[inside];
+    return std::max(
+        0.0, side.outward * side.normal[inside] + 2.0 * (std::sqrt(g * block.depth[inside]) - std::sqrt(g * depth)));
+}
+
+/// A lake at its level, over ground as high as that of the last cell. One that goes on is at rest: waves that reach it go on.
+/// One that is held takes what flows out of the grid, and its surface stays.
+void lake_beyond(const WaterBody& body, WaterBlock& block, const Side& side, Index inside, Index step, Index room) {
+    const double level = body.lakes[side.number], depth = level - (block.surface[inside] - block.depth[inside]);
+    const double out = body.sides[side.number] == WaterSide::level ? speed_beyond(block, side, inside, depth) : 0.0;
+    double* const along = side.normal == block.u ? block.v : block.u;
     for (Index n = 1; n <= std::min(kHalo, room); ++n) {
         const Index to = inside - n * step;
-        block.depth[to] = body.level - ground, block.surface[to] = body.level;
-        block.u[to] = block.v[to] = 0.0, block.normal_gravity[to] = block.normal_gravity[inside];
+        block.depth[to] = depth, block.surface[to] = level;
+        side.normal[to] = side.outward * out, along[to] = out > 0.0 ? along[inside] : 0.0;
+        block.normal_gravity[to] = block.normal_gravity[inside];
+    }
+}
+
+/// Water that leaves by a free side has the depth and the speed of the cell before the last one: in steady flow nothing then
+/// changes towards the side. Where both cells differ by more than kEven, as at a bore or on rough ground, by that much.
+void even_out(WaterBlock& block, const Side& side, Index inside, Index step, Index room) {
+    constexpr double kEven = 0.1;
+    const auto nearer = [&](double last, double before) {
+        const double most = kEven * std::abs(last);
+        return last + std::clamp(before - last, -most, most);
+    };
+    const double depth = nearer(block.depth[inside], block.depth[inside + step]),
+                 speed = nearer(side.normal[inside], side.normal[inside + step]);
+    for (Index n = 1; n <= std::min(kHalo, room); ++n) {
+        const Index to = inside - n * step;
+        block.surface[to] += depth - block.depth[to], block.depth[to] = depth, side.normal[to] = speed;
     }
 }
 
 /// What lies beyond a side, from the cells before it: `inside` is the last cell, `step` leads into the grid.
 /// A wall is a mirror, and so is an open side that water does not leave by. Where it does, the ground goes on
-/// as it falls, or level, with water as deep and as fast. Where a lake goes on, it is at rest there. `room`: cells the
-/// block has.
-void beyond(const WaterBody& body, WaterBlock& block, Index inside, Index step, WaterSide side, double* normal,
-            double outward, Index room) {
-    if (side == WaterSide::open && meets_lake(body, block, inside)) return lake_beyond(body, block, inside, step, room);
+/// as it falls, or level, with water as deep and as fast. `room`: cells the block has.
+void beyond(const WaterBody& body, WaterBlock& block, const Side& side, Index inside, Index step, Index room) {
+    if (meets_lake(body, block, inside, side.number)) return lake_beyond(body, block, side, inside, step, room);
     const auto ground = [&](Index k) { return block.surface[k] - block.depth[k]; };
     const double fall = std::max(0.0, ground(inside + step) - ground(inside));
-    const bool leaves = side == WaterSide::open && outward * normal[inside] > 0.0;
+    const bool leaves = body.sides[side.number] != WaterSide::wall && side.outward * side.normal[inside] > 0.0;
     for (Index n = 1; n <= std::min(kHalo, room); ++n) {
         const Index to = inside - n * step, from = leaves ? inside : inside + (n - 1) * step;
         block.depth[to] = block.depth[from], block.u[to] = block.u[from], block.v[to] = block.v[from];
@@ -32,8 +66,9 @@ void beyond(const WaterBody& body, WaterBlock& block, Index inside, Index step, 
         if (leaves)
             block.surface[to] -= static_cast<double>(n) * fall;
         else
-            normal[to] = -normal[to];
+            side.normal[to] = -side.normal[to];
     }
+    if (leaves && body.sides[side.number] == WaterSide::free) even_out(block, side, inside, step, room);
 }
 
 void load_row(const WaterBody& body, const WaterFields& from, const TilePart& part, Index b, WaterBlock& block) {
@@ -51,8 +86,8 @@ void load_row(const WaterBody& body, const WaterFields& from, const TilePart& pa
         block.u[row + a] = per * from.qx[first + a], block.v[row + a] = per * from.qy[first + a];
         block.normal_gravity[row + a] = body.normal_gravity[first + a];
     }
-    if (a0 > 0) beyond(body, block, row + a0, 1, body.sides[0], block.u, -1.0, a0);
-    if (a1 < kRows) beyond(body, block, row + a1 - 1, -1, body.sides[1], block.u, 1.0, kRows - a1);
+    if (a0 > 0) beyond(body, block, {0, block.u, -1.0}, row + a0, 1, a0);
+    if (a1 < kRows) beyond(body, block, {1, block.u, 1.0}, row + a1 - 1, -1, kRows - a1);
 }
 
 }  // namespace
@@ -66,8 +101,8 @@ bool load_block(const WaterBody& body, const WaterFields& from, const TilePart& 
     const Index b0 = std::max<Index>(0, kHalo - part.j0), b1 = std::min(kRows, kHalo + body.grid.ny() - part.j0);
     for (Index b = b0; b < b1; ++b) load_row(body, from, part, b, block);
     for (Index a = 0; a < kRows; ++a) {
-        if (b0 > 0) beyond(body, block, b0 * kRow + a, kRow, body.sides[2], block.v, -1.0, b0);
-        if (b1 < kRows) beyond(body, block, (b1 - 1) * kRow + a, -kRow, body.sides[3], block.v, 1.0, kRows - b1);
+        if (b0 > 0) beyond(body, block, {2, block.v, -1.0}, b0 * kRow + a, kRow, b0);
+        if (b1 < kRows) beyond(body, block, {3, block.v, 1.0}, (b1 - 1) * kRow + a, -kRow, kRows - b1);
     }
     double deepest = 0.0;
     for (Index b = 0; b < std::min(kRows, b1 + kHalo); ++b)

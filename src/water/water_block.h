@@ -32,10 +32,10 @@ struct WaterFaces {
 
 TilePart part_of(const TileGrid& grid, Index tile);
 
-/// Whether the lake goes on beyond a cell at an open side: it stands higher than the ground there, with what is confined on
-/// it.
-inline bool meets_lake(const WaterBody& body, const WaterBlock& block, Index k) {
-    return block.surface[k] - block.depth[k] < body.level;
+/// Whether a lake goes on beyond a cell at a side (0 to 3) that is no wall: it stands higher than the ground there, with what
+/// is confined on it.
+inline bool meets_lake(const WaterBody& body, const WaterBlock& block, Index k, std::size_t side) {
+    return body.sides[side] != WaterSide::wall && block.surface[k] - block.depth[k] < body.lakes[side];
 }
 
 /// Fills the block; false when no water in it moves.

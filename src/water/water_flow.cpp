@@ -8,11 +8,15 @@
 #include <limits>
 
 #include "base/clock.h"
+#include "base/discharge.h"
 #include "base/error.h"
 #include "base/flush_denormals.h"
 
 namespace frana {
 namespace {
+
+/// Cells: a lake beyond a side fills dry cells in both stages of a step; one more for good measure.
+constexpr Index kLakeReach = 3;
 
 constexpr Index kBeyond = 2;  ///< nodes beyond the grid whose bed is known, for slopes at its sides
 
@@ -50,12 +54,23 @@ LazyArray<double> at_nodes(const WaterScene::Function& f, const TileGrid& grid) 
     return values;
 }
 
+/// Of the water beyond each side, above the datum [m].
+std::array<double, 4> lakes_of(const WaterScene& scene, double datum) {
+    std::array<double, 4> lakes{};
+    for (std::size_t side = 0; side < lakes.size(); ++side) {
+        lakes[side] = WaterBody::kNoLake;
+        if (scene.sides[side] == WaterSide::level) lakes[side] = scene.side_levels[side] - datum;
+        if (scene.sides[side] == WaterSide::open && scene.level) lakes[side] = *scene.level - datum;
+    }
+    return lakes;
+}
+
 }  // namespace
 
 void WaterLedger::add(const WaterLedger& o, double share) {
     released += share * o.released, columns += share * o.columns;
     rained += share * o.rained, infiltrated += share * o.infiltrated, left += share * o.left;
-    entered += share * o.entered;
+    entered += share * o.entered, fed += share * o.fed;
     momentum_left += share * o.momentum_left, momentum_infiltrated += share * o.momentum_infiltrated;
     ground += share * o.ground, walls += share * o.walls, friction += share * o.friction;
     braked += share * o.braked, sheared += share * o.sheared, energy_out += share * o.energy_out;
@@ -79,7 +94,7 @@ WaterBody::WaterBody(const WaterScene& scene)
       theta(scene.theta),
       film(scene.film),
       datum(learn_bed(scene, grid, bed)),
-      level(scene.level ? *scene.level - datum : -std::numeric_limits<double>::max()),
+      lakes(lakes_of(scene, datum)),
       steep(scene.steep) {
     if (scene.confined) confined = at_nodes(scene.confined, grid);
     if (viscosity.kinematic > 0.0 && viscosity.solid_gradient)
@@ -102,13 +117,62 @@ WaterFlow::WaterFlow(const WaterScene& scene)
     : body_(scene),
       wanted_(static_cast<std::size_t>(body_.grid.tiles())),
       rained_(static_cast<std::size_t>(body_.grid.tiles())),
+      sources_(scene.sources),
       cfl_(scene.cfl) {
     expect(scene.grid.nx >= 3 && scene.grid.ny >= 3, "water needs three nodes each way");
     expect(scene.theta >= 1.0 && scene.theta <= 2.0 && scene.cfl > 0.0 && scene.cfl < 0.5 && scene.film > 0.0,
            "numbers of the water scheme are in range");
     flush_denormals_on_all_threads();
     body_.work.reserve(wanted_.size()), body_.sums.reserve(wanted_.size()), next_.reserve(wanted_.size());
+    place_sources();
     place(scene);
+}
+
+/// Tiles of sources are always visited.
+void WaterFlow::place_sources() {
+    const TileGrid& grid = body_.grid;
+    if (sources_.empty()) return;
+    for (LazyArray<double>* field : {&body_.fed, &body_.fed_x, &body_.fed_y}) *field = LazyArray<double>(grid.size());
+    for (const WaterSource& source : sources_) {
+        expect(source.time.size() > 1 && source.discharge.size() == source.time.size() &&
+                   source.speed.size() == source.time.size(),
+               "each time of a source has its discharge and its speed");
+        for (const WaterSource::Place& at : source.places) {
+            expect(at.i >= 0 && at.j >= 0 && at.i < grid.nx() && at.j < grid.ny(), "sources lie in the grid");
+            expect_water(at.i, at.j, 0);
+        }
+    }
+}
+
+/// Always visits the tiles of the cells around one that water may come to, as far as it gets within a step.
+void WaterFlow::expect_water(Index i, Index j, Index reach) {
+    const TileGrid& grid = body_.grid;
+    const auto clamped = [](Index n, Index count) { return std::clamp<Index>(n, 0, count - 1); };
+    for (const Index dj : {-reach, reach})
+        for (const Index di : {-reach, reach}) {
+            const Index a = clamped(i + di, grid.nx()), b = clamped(j + dj, grid.ny());
+            rained_[static_cast<std::size_t>((b / kTile + 1) * grid.tiles_x() + a / kTile + 1)] = 1;
+        }
+}
+
+/// What sources bring from now to `end` [s]: the table's integrals over it, so that no step loses any.
+void WaterFlow::feed(double end) {
+    const double per = 1.0 / (body_.grid.cell() * body_.grid.cell());
+    for (const WaterSource& source : sources_)
+        for (const WaterSource::Place& at : source.places) {
+            const Index k = body_.grid.at(at.i, at.j);
+            body_.fed[k] = body_.fed_x[k] = body_.fed_y[k] = 0.0;
+        }
+    for (const WaterSource& source : sources_) {
+        const Through comes = between(source, status_.time, end);
+        if (!(comes.volume > 0.0)) continue;
+        for (const WaterSource::Place& at : source.places) {
+            const Index k = body_.grid.at(at.i, at.j);
+            body_.fed[k] += per * at.share * comes.volume;
+            body_.fed_x[k] += per * at.share * comes.momentum * at.towards.x();
+            body_.fed_y[k] += per * at.share * comes.momentum * at.towards.y();
+        }
+    }
 }
 
 /// Water at the start, and the first list of tiles: those of the grid, less the dry ones.
@@ -118,8 +182,8 @@ void WaterFlow::place(const WaterScene& scene) {
     for (Index j = 0; j < g.ny; ++j)
         for (Index i = 0; i < g.nx; ++i) {
             const Index k = grid.at(i, j);
-            if ((body_.rain && body_.rain[k] > 0.0) || body_.meets_lake(i, j))
-                rained_[static_cast<std::size_t>((j / kTile + 1) * grid.tiles_x() + i / kTile + 1)] = 1;
+            if (body_.rain && body_.rain[k] > 0.0) comes_on_ = true, expect_water(i, j, 0);
+            if (body_.meets_lake(i, j)) comes_on_ = true, expect_water(i, j, kLakeReach);
             if (!scene.start) continue;
             const WaterState s = scene.start(g.x(i), g.y(j));
             expect(s.depth >= 0.0, "water at the start has no negative depth");
@@ -184,6 +248,7 @@ double WaterFlow::step_length(double until) const {
 void WaterFlow::advance(double until) {
     expect(until > status_.time, "a step goes forward");
     const double dt = step_length(until);
+    if (!sources_.empty()) timed_("sources", [&] { feed(status_.after(dt, until)); });
     timed_("first stage", [&] { first_stage(body_, dt); });
     timed_("second stage", [&] { second_stage(body_, dt); });
     status_.tick(dt, until);
@@ -242,6 +307,23 @@ void WaterFlow::take_changes(const std::vector<Index>& tiles) {
     status_.ledger.columns += status_.momentum - momentum;
 }
 
+double WaterFlow::due_so_far() const {
+    double sum = 0.0;
+    for (const WaterSource& source : sources_) sum += volume_until(source, status_.time);
+    return sum;
+}
+
+double WaterFlow::due_at_all() const {
+    double sum = 0.0;
+    for (const WaterSource& source : sources_) sum += volume_until(source, source.time.back());
+    return sum;
+}
+
+bool WaterFlow::sources_go_on() const {
+    return std::any_of(sources_.begin(), sources_.end(),
+                       [&](const WaterSource& source) { return status_.time < source.time.back(); });
+}
+
 WaterState WaterFlow::at(Index i, Index j) const {
     const Index k = body_.grid.at(i, j);
     const double h = body_.now.h[k], per = h > body_.film ? 1.0 / h : 0.0;
@@ -269,7 +351,7 @@ double WaterFlow::volume_faster_than(double speed) const {
 
 double WaterFlow::volume_residual() const {
     const WaterLedger& l = status_.ledger;
-    return status_.volume + l.left + l.infiltrated - l.rained - l.entered - l.released - status_.volume_given;
+    return status_.volume + l.left + l.infiltrated - l.rained - l.entered - l.fed - l.released - status_.volume_given;
 }
 
 Vec2 WaterFlow::momentum_residual() const {

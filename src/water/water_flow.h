@@ -1,8 +1,10 @@
 #pragma once
 // Free water on the grid of the columns: the shallow-water equations over bed and confined mass, by a finite
 // volume scheme of second order that keeps lakes at rest and depths positive. One cell around each node.
+#include <algorithm>
 #include <array>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -16,8 +18,23 @@
 
 namespace frana {
 
-/// What a side of the grid does: stops the water, or lets it go; none comes in but of a lake (WaterScene::level).
-enum class WaterSide { wall, open };
+/// What a side of the grid does: stops the water; lets it go, and none comes in (free), or of a lake alone (open:
+/// WaterScene::level); or holds it at a level (WaterScene::side_levels), where it goes both ways.
+enum class WaterSide { wall, open, free, level };
+
+/// Water that comes in at cells: a discharge and a speed that are linear between the times of a table. Before and after it
+/// nothing comes.
+struct WaterSource {
+    struct Place {
+        Index i, j;    ///< the cell's node
+        double share;  ///< of the discharge, 1 over all places [1]
+        Vec2 towards;  ///< unit vector on the map that the water flows along
+    };
+    std::vector<double> time;       ///< [s]
+    std::vector<double> discharge;  ///< [m^3/s]
+    std::vector<double> speed;      ///< on the map [m/s]
+    std::vector<Place> places;
+};
 
 /// Depth [m] and velocity on the map [m/s] at the start, means over a cell.
 struct WaterState {
@@ -39,6 +56,8 @@ struct WaterScene {
     Function infiltration = {};                                ///< what the ground takes at most [m/s]
     std::array<WaterSide, 4> sides{};                          ///< at low x, high x, low y, high y
     std::optional<double> level;  ///< of a lake that goes on beyond open sides, where the ground there is lower [m]
+    std::array<double, 4> side_levels{};  ///< of the water beyond sides that hold one [m]
+    std::vector<WaterSource> sources;
     WaterFriction friction;
     WaterViscosity viscosity;
     double gravity = constants::kGravity;  ///< [m/s^2]
@@ -56,7 +75,8 @@ struct WaterScene {
 /// Sums over density since the start, or of one step: volumes [m^3], momentum [m^4/s].
 struct WaterLedger {
     double rained = 0.0, infiltrated = 0.0, left = 0.0;
-    double entered = 0.0;                                  ///< from a lake beyond open sides
+    double entered = 0.0;                                  ///< from a lake beyond sides
+    double fed = 0.0;                                      ///< by sources
     Vec2 momentum_left{0, 0}, momentum_infiltrated{0, 0};  ///< carried out, less what entered brought
     double released = 0.0;                                 ///< given by columns
     Vec2 columns{0, 0};                                    ///< of what columns released, and their drag
@@ -64,8 +84,8 @@ struct WaterLedger {
     Vec2 walls{0, 0};                                      ///< push of walls, and of the water beyond open sides
     Vec2 friction{0, 0};                                   ///< at the bed, and what films lose that stop
     /// Energy over density [m^5/s^2]: lost at the bed, by films that stop and in speeding up rain; lost to viscosity inside;
-    /// gone with the water through open sides and into the ground, less what rain and entering water brought, heights above
-    /// the datum.
+    /// gone with the water through open sides and into the ground, less what rain, sources and entering water brought, heights
+    /// above the datum.
     double braked = 0.0, sheared = 0.0, energy_out = 0.0;
     void add(const WaterLedger& o, double share = 1.0);
 };
@@ -98,12 +118,17 @@ struct WaterFields {
 /// All that the kernels share.
 struct WaterBody {
     explicit WaterBody(const WaterScene& scene);
-    /// Whether a lake goes on beyond the cell: it is at an open side, and its ground lower than the lake.
-    bool meets_lake(Index i, Index j) const {
-        const auto open = [&](std::size_t side, bool here) { return here && sides[side] == WaterSide::open; };
-        return bed[grid.at(i, j)] < level &&
-               (open(0, i == 0) || open(1, i == grid.nx() - 1) || open(2, j == 0) || open(3, j == grid.ny() - 1));
+    /// The highest of the lakes beyond the sides that the cell is at; far below all ground where there is none [m]
+    double highest_lake(Index i, Index j) const {
+        double highest = kNoLake;
+        const auto at = [&](std::size_t side, bool here) {
+            if (here && sides[side] != WaterSide::wall) highest = std::max(highest, lakes[side]);
+        };
+        at(0, i == 0), at(1, i == grid.nx() - 1), at(2, j == 0), at(3, j == grid.ny() - 1);
+        return highest;
     }
+    /// Whether a lake goes on beyond the cell: its ground is lower than that.
+    bool meets_lake(Index i, Index j) const { return bed[grid.at(i, j)] < highest_lake(i, j); }
     TileGrid grid;
     WaterFields now, half;                 ///< the state; after the first stage of a step
     LazyArray<double> driven_x, driven_y;  ///< discharge after the first stage, before friction [m^2/s]
@@ -114,14 +139,17 @@ struct WaterBody {
     /// With WaterViscosity::solid_gradient, as confined: confined mass's share of the volume [1], its velocity [m/s].
     LazyArray<double> share, bound_x, bound_y;
     LazyArray<double> rain, infiltration;  ///< [m/s]; empty without
-    std::vector<Index> work;               ///< tiles that hold water, be it a film, or are within its reach
-    std::vector<WaterSums> sums;           ///< of the step, per tile of the list
+    /// What sources bring to the cells in the step: depth [m] and discharge [m^2/s]; empty without sources.
+    LazyArray<double> fed, fed_x, fed_y;
+    std::vector<Index> work;      ///< tiles that hold water, be it a film, or are within its reach
+    std::vector<WaterSums> sums;  ///< of the step, per tile of the list
     std::array<WaterSide, 4> sides;
     WaterFriction friction;
     WaterViscosity viscosity;
     double gravity, theta, film;
     double datum;  ///< lets water high above the sea keep its digits [m]
-    double level;  ///< above it, of the lake beyond open sides; far below all ground without one [m]
+    static constexpr double kNoLake = -std::numeric_limits<double>::max();
+    std::array<double, 4> lakes;  ///< above it, of those beyond the sides; kNoLake without one [m]
     bool steep;
 };
 
@@ -167,12 +195,22 @@ public:
     WaterState at(Index i, Index j) const;
     double surface(Index i, Index j) const;
     std::vector<PhaseTime> timings() const { return timed_.times(); }
-    /// Present + left + infiltrated - rained - entered - given [m^3], and momentum the same way [m^4/s]: round-off
+    /// By the tables of the sources, up to now and on the whole [m^3].
+    double due_so_far() const;
+    double due_at_all() const;
+    /// Whether sources have more to bring.
+    bool sources_go_on() const;
+    /// Whether water comes without end: as rain, or from a lake beyond a side.
+    bool comes_on() const { return comes_on_; }
+    /// Present + left + infiltrated - rained - entered - fed - given [m^3], and momentum the same way [m^4/s]: round-off
     double volume_residual() const;
     Vec2 momentum_residual() const;
 
 private:
     void place(const WaterScene& scene);
+    void place_sources();
+    void expect_water(Index i, Index j, Index reach);
+    void feed(double end);
     void list_tiles();
     void clear_tiles();
     double step_length(double until) const;
@@ -184,7 +222,9 @@ private:
     StepClock timed_;
     WaterStatus status_;
     std::vector<std::uint8_t> wanted_;  ///< per tile: on the next list
-    std::vector<std::uint8_t> rained_;  ///< per tile: rain may fall on it, or a lake beyond a side come in
+    std::vector<std::uint8_t> rained_;  ///< per tile: rain may fall on it, a source be there, or a lake come in
+    std::vector<WaterSource> sources_;
+    bool comes_on_ = false;
     std::vector<Index> next_;
     double cfl_;
     double signal_ = 0.0;  ///< largest speed of water and waves [m/s]

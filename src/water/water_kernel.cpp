@@ -71,9 +71,10 @@ void find_fluxes(const WaterBlock& block, const double* along, const double* acr
 
 /// A face at a side of the grid lets nothing in but of a lake beyond it, and through a wall nothing out. `inside`: the last
 /// cell.
-void close(const WaterBody& body, const WaterBlock& block, WaterFaces& faces, Index k, Index inside, WaterSide side,
+void close(const WaterBody& body, const WaterBlock& block, WaterFaces& faces, Index k, Index inside, std::size_t side,
            double outward) {
-    if (side == WaterSide::open && (outward * faces.mass[k] > 0.0 || meets_lake(body, block, inside))) return;
+    const bool leaves = body.sides[side] != WaterSide::wall && outward * faces.mass[k] > 0.0;
+    if (leaves || meets_lake(body, block, inside, side)) return;
     faces.mass[k] = faces.along[k] = faces.across[k] = 0.0;
 }
 
@@ -103,8 +104,8 @@ void find_faces(const WaterBody& body, const TilePart& part, Stage& s) {
         s.across_x.along[b * kRow + 21] = s.across_x.across[b * kRow + 21] = 0.0;
         find_fluxes(block, block.u, block.v, s.across_x, b * kRow + 2, 1, s.x);
         const Index low = b * kRow + kHalo, high = b * kRow + last;
-        if (part.i0 == 0) close(body, block, s.x, low, low, body.sides[0], -1.0);
-        if (last <= kHalo + kTile + 1) close(body, block, s.x, high, high - 1, body.sides[1], 1.0);
+        if (part.i0 == 0) close(body, block, s.x, low, low, 0, -1.0);
+        if (last <= kHalo + kTile + 1) close(body, block, s.x, high, high - 1, 1, 1.0);
     }
     for (Index b = kHalo - 2; b <= part.rows + 1; ++b)
         find_slopes(block, block.v, block.u, b * kRow + 2, kRow, body.theta, s.across_y);
@@ -112,8 +113,8 @@ void find_faces(const WaterBody& body, const TilePart& part, Stage& s) {
         find_fluxes(block, block.v, block.u, s.across_y, b * kRow + 2, kRow, s.y);
         for (Index a = kHalo - 1; a <= kHalo + kTile; ++a) {
             const Index k = b * kRow + a;
-            if (part.j0 == 0 && b == kHalo) close(body, block, s.y, k, k, body.sides[2], -1.0);
-            if (b == top) close(body, block, s.y, k, k - kRow, body.sides[3], 1.0);
+            if (part.j0 == 0 && b == kHalo) close(body, block, s.y, k, k, 2, -1.0);
+            if (b == top) close(body, block, s.y, k, k - kRow, 3, 1.0);
         }
     }
 }
@@ -363,33 +364,53 @@ double along_ground(const WaterBody& body, Index k, const Vec2& a, const Vec2& b
     return a.dot(b) + slope.dot(a) * slope.dot(b);
 }
 
-/// Rain and infiltration, recorded in cells of unit area. Rain falls onto the surface and takes up the speed of what it
-/// falls into.
-void rain_and_soak(const WaterBody& body, Index k, double dt, Water& w, WaterLedger& ledger) {
-    const double ground = body.bed[k] + body.confined[k];
+/// Energy of a depth that joins a cell with velocity v, recorded in cells of unit area: it comes onto the surface, and both
+/// then share their momentum.
+void join(const WaterBody& body, Index k, double added, const Vec2& v, Water& w, WaterLedger& ledger) {
+    const double before = w.h;
+    w.h += added;
+    ledger.energy_out -= body.gravity * added * (body.bed[k] + body.confined[k] + before + 0.5 * added);
+    if (before > body.film) {
+        const Vec2 slip = Vec2(w.qx, w.qy) / before - v;
+        ledger.braked += 0.5 * before * added / w.h * along_ground(body, k, slip, slip);
+    }
+}
+
+/// What sources bring in the step; all of it on top, so that the flux of a step is that of the water that was there.
+void take_from_sources(const WaterBody& body, Index k, Water& w, WaterLedger& ledger) {
+    const double added = body.fed[k];
+    if (!(added > 0.0)) return;
+    const Vec2 brought(body.fed_x[k], body.fed_y[k]), v = brought / added;
+    join(body, k, added, v, w, ledger);
+    w.qx += brought.x(), w.qy += brought.y();
+    ledger.fed += added, ledger.momentum_left -= brought;
+    ledger.energy_out -= 0.5 * added * along_ground(body, k, v, v);
+}
+
+/// Sources, rain and infiltration, recorded in cells of unit area. Rain falls onto the surface and takes up the speed of what
+/// it falls into.
+void feed_and_soak(const WaterBody& body, Index k, double dt, Water& w, WaterLedger& ledger) {
+    if (body.fed) take_from_sources(body, k, w, ledger);
     if (body.rain) {
-        const double rained = dt * body.rain[k], before = w.h;
-        w.h += rained, ledger.rained += rained;
-        ledger.energy_out -= body.gravity * rained * (ground + before + 0.5 * rained);
-        if (before > body.film) {
-            const Vec2 v = Vec2(w.qx, w.qy) / before;
-            ledger.braked += 0.5 * before * rained / w.h * along_ground(body, k, v, v);
-        }
+        const double rained = dt * body.rain[k];
+        join(body, k, rained, Vec2(0, 0), w, ledger);
+        ledger.rained += rained;
     }
     if (body.infiltration && w.h > 0.0) {
         const double taken = std::min(w.h, dt * body.infiltration[k]), kept = 1.0 - taken / w.h;
         const Vec2 v = w.h > body.film ? Vec2(Vec2(w.qx, w.qy) / w.h) : Vec2(0, 0);
         ledger.infiltrated += taken, ledger.momentum_infiltrated += (1.0 - kept) * Vec2(w.qx, w.qy);
-        ledger.energy_out += taken * (body.gravity * (ground + w.h - 0.5 * taken) + 0.5 * along_ground(body, k, v, v));
+        ledger.energy_out += taken * (body.gravity * (body.bed[k] + body.confined[k] + w.h - 0.5 * taken) +
+                                      0.5 * along_ground(body, k, v, v));
         w.h -= taken, w.qx *= kept, w.qy *= kept;
     }
 }
 
-/// Rain, infiltration and friction at the end of a step, recorded in cells of unit area. Friction's work is its impulse
+/// Sources, rain, infiltration and friction at the end of a step, recorded in cells of unit area. Friction's work is its impulse
 /// times the mean of the velocities at the start and at the end: what it holds at rest or at one speed loses no more than
 /// it falls.
 void finish_cell(const WaterBody& body, Index k, double dt, Water& w, WaterLedger& ledger) {
-    if (body.rain || body.infiltration) rain_and_soak(body, k, dt, w, ledger);
+    if (body.rain || body.infiltration || body.fed) feed_and_soak(body, k, dt, w, ledger);
     const Vec2 driven(w.qx, w.qy);
     if (w.h > body.film)
         brake(body, k, dt, w);
@@ -413,8 +434,8 @@ std::uint16_t near_of(Index i, Index j) {
 
 /// Counts the cell at node (i, j), stored at k.
 void count(const WaterBody& body, Index k, Index i, Index j, const Water& w, WaterSums& sums) {
-    if (body.meets_lake(i, j))  // its waves come in
-        sums.signal = std::max(sums.signal, std::sqrt(body.normal_gravity[k] * (body.level - body.bed[k])));
+    if (const double lake = body.highest_lake(i, j); body.bed[k] < lake)  // its waves come in
+        sums.signal = std::max(sums.signal, std::sqrt(body.normal_gravity[k] * (lake - body.bed[k])));
     if (!(w.h > 0.0)) {
         if (w.h != 0.0) sums.bad = k;  // negative, or not a number
         return;

@@ -10,7 +10,7 @@ namespace {
 
 void serialize_ledger(WaterLedger& l, std::vector<double*>& numbers) {
     for (double* one :
-         {&l.rained, &l.infiltrated, &l.left, &l.entered, &l.released, &l.braked, &l.sheared, &l.energy_out})
+         {&l.rained, &l.infiltrated, &l.left, &l.entered, &l.fed, &l.released, &l.braked, &l.sheared, &l.energy_out})
         numbers.push_back(one);
     for (Vec2* v : {&l.momentum_left, &l.momentum_infiltrated, &l.columns, &l.ground, &l.walls, &l.friction})
         for (int k = 0; k < 2; ++k) numbers.push_back(&(*v)[k]);

@@ -53,16 +53,16 @@ private:
 }  // namespace
 
 std::string toml_of(const Draft& draft) {
-    std::string text, table;
-    for (const auto& [key, value] : draft.keys) {  // sorted: a table's keys come together
+    std::map<std::string, std::string> tables;  // keys of [water] lie around those of [water.sides]
+    for (const auto& [key, value] : draft.keys) {
         const std::size_t dot = key.rfind('.');
-        if (key.substr(0, dot) != table) {
-            table = key.substr(0, dot);
-            const std::size_t number = table.find('#');
-            const bool repeated = table == "release" || number != std::string::npos;
-            text += fmt::format(repeated ? "[[{}]]\n" : "[{}]\n", table.substr(0, number));
-        }
-        text += fmt::format("{} = {}\n", key.substr(dot + 1), value);
+        tables[key.substr(0, dot)] += fmt::format("{} = {}\n", key.substr(dot + 1), value);
+    }
+    std::string text;
+    for (const auto& [table, keys] : tables) {
+        const std::size_t number = table.find('#');
+        const bool repeated = table == "release" || number != std::string::npos;
+        text += fmt::format(repeated ? "[[{}]]\n" : "[{}]\n", table.substr(0, number)) + keys;
     }
     return text;
 }
@@ -85,8 +85,8 @@ bool same(const Draft& a, const Draft& b) {
 }
 
 const std::vector<Model>& all_models() {
-    static const std::vector<Model> models = {Model::depth_averaged, Model::solid_flow, Model::structured,
-                                              Model::water,          Model::mixture,    Model::staged};
+    static const std::vector<Model> models = {Model::depth_averaged, Model::solid_flow, Model::structured, Model::water,
+                                              Model::mixture,        Model::staged,     Model::flood};
     return models;
 }
 
@@ -104,6 +104,8 @@ const char* word_of(Model model) {
             return "mixture";
         case Model::staged:
             return "staged";
+        case Model::flood:
+            return "flood";
     }
     throw InternalError("unknown model");
 }
@@ -119,7 +121,7 @@ std::vector<Model> models_of(const std::string& words) {
         if (models.size() == before)
             throw UserError(
                 fmt::format("--model: found \"{}\"; expected all, or some of depth_averaged, solid_flow, "
-                            "structured, water, mixture, staged with commas between; choose of these",
+                            "structured, water, mixture, staged, flood with commas between; choose of these",
                             word));
     }
     if (models.empty()) throw UserError("--model: found no word; expected all, or the models to draw; name one");

@@ -10,7 +10,7 @@
 namespace frana::stress {
 
 /// What carries the material of a scene.
-enum class Model { depth_averaged, solid_flow, structured, water, mixture, staged };
+enum class Model { depth_averaged, solid_flow, structured, water, mixture, staged, flood };
 
 /// Images of a draft that are the draft itself.
 enum class Mirror { none, x, y, diagonal };

@@ -22,6 +22,7 @@ void draw_solid_flow(Dice& dice, Draft& draft);  ///< 3D points from the start, 
 void draw_structured(Dice& dice, Draft& draft);  ///< columns that hold together, and grains
 void draw_water(Dice& dice, Draft& draft);       ///< a lake, rain, a wave of water, beside little that is solid
 void draw_mixture(Dice& dice, Draft& draft);     ///< columns and grains with water in their pores and within them
+void draw_flood(Dice& dice, Draft& draft);       ///< water alone: releases, a lake, rain, inflows, sides of all kinds
 void draw_staged(Dice& dice, Draft& draft);      ///< columns, 3D points in a window, and perhaps columns again
 
 /// Shape of the ground, of the release, what it is made of, how it is solved: the parts of draw().

@@ -65,4 +65,38 @@ void draw_water(Dice& dice, Draft& draft) {
     if (dice.chance(0.3)) draw_rate(dice, draft, "water.infiltration", "soak.tif");
 }
 
+namespace {
+
+/// Each side a wall, free, or at a level.
+void draw_sides(Dice& dice, Draft& draft) {
+    double low = INFINITY, high = -INFINITY;
+    for (const double z : draft.dem().values) low = std::min(low, z), high = std::max(high, z);
+    for (const char* side : {"west", "east", "south", "north"}) {
+        const std::string key = std::string("water.sides.") + side;
+        const double kind = dice.unit(), level = low + dice.between(-0.2, 1.0) * std::max(high - low, 0.1);
+        if (kind < 0.2) say(draft, key, "wall");
+        if (kind >= 0.2 && kind < 0.5) say(draft, key, "free");
+        if (kind >= 0.5 && kind < 0.7) say(draft, key, level);
+    }
+}
+
+}  // namespace
+
+void draw_flood(Dice& dice, Draft& draft) {
+    draw_ground(dice, draft);
+    draw_release(dice, draft, {0.02, 3.0, 200});
+    say(draft, "water.model", "free");
+    const std::string friction = dice.one_of({"none", "manning", "darcy_weisbach"});
+    say(draft, "water.friction", friction);
+    if (friction == "manning") say(draft, "water.manning_n", dice.decades(1e-3, 1.0));
+    if (friction == "darcy_weisbach") say(draft, "water.darcy_f", dice.decades(1e-3, 1.0));
+    if (dice.chance(0.2)) say(draft, "water.viscous", "clear"), say(draft, "water.viscosity", dice.decades(1e-4, 10.0));
+    if (dice.chance(0.5)) draw_level(dice, draft);
+    if (dice.chance(0.3)) draw_rate(dice, draft, "water.rain", "rain.tif");
+    if (dice.chance(0.3)) draw_rate(dice, draft, "water.infiltration", "soak.tif");
+    if (dice.chance(0.5)) draw_inflow(dice, draft);
+    if (dice.chance(0.3)) draw_spring(dice, draft);
+    if (dice.chance(0.6)) draw_sides(dice, draft);
+}
+
 }  // namespace frana::stress

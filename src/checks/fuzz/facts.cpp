@@ -230,6 +230,9 @@ void learn_water(const Scene& scene, Facts& facts) {
         facts.displaces = scene.water->exchange.material.fluid_density * scene.gravity * volume;
         facts.bears = scene.water->exchange.pore_pressure;
     }
+    learn_inflows(scene, facts);
+    for (const WaterPhase::Side& side : scene.water->sides)  // water comes in from so high
+        if (side.is == WaterPhase::Side::Is::level) facts.highest_rain = std::max(facts.highest_rain, side.level);
     if (scene.water->rain.values.empty()) return;
     for (const double z : scene.bed.values) facts.highest_rain = std::max(facts.highest_rain, z);
 }

@@ -67,6 +67,7 @@ double fastest_of(const Frame& frame, const PointStates& points) {
         if (!points.in_3d[static_cast<std::size_t>(p)] && !(speed <= fastest)) fastest = speed;
     }
     const Field* water = frame.node("water_velocity");
+    if (!water && points.count() == 0) water = frame.node("velocity");  // of water alone
     for (Index n = 0; water && n < water->count; ++n) {
         const double* v = water->data + 3 * n;
         const double speed = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);

@@ -42,6 +42,7 @@ std::string heading(const RunRecord& r) {
 
 /// Of two phases each has its own volume: that of the grains is without pores.
 std::string left_text(const RunRecord& r) {
+    if (r.of_water_alone()) return fmt::format("{:.6g} m3 of water", r.extras.water->left);
     if (!r.extras.water) return fmt::format("{:.6g} m3", r.summary.last.mass_left / r.density);
     return fmt::format("{:.6g} m3 of grains and {:.6g} m3 of water", r.extras.water->solids_left / r.density,
                        r.extras.water->left);
@@ -84,7 +85,8 @@ std::string late_text(const LateEntry& late) {
 std::string results(const RunRecord& r) {
     const RunSummary& s = r.summary;
     std::string text = "## Results\n\n| Quantity | Value |\n|---|---|\n";
-    text += row("release volume", fmt::format("{:.6g} m3", r.release_volume));
+    text +=
+        row(r.of_water_alone() ? "water at the start" : "release volume", fmt::format("{:.6g} m3", r.release_volume));
     if (r.extras.inflow) text += row("came in by inflows", inflow_text(*r.extras.inflow));
     for (const LateEntry& late : r.extras.late) text += row("entered later: " + late.name, late_text(late));
     text += row("simulated time",
@@ -102,7 +104,7 @@ std::string results(const RunRecord& r) {
     if (std::isfinite(r.flow_width))
         text += row("width of the flow, median over its length",
                     fmt::format("{:.4g} m, {:.3g} cells", r.flow_width, r.flow_width / r.grid.cell));
-    text += row(r.extras.water ? "deepest at the end, without free water" : "deepest at the end",
+    text += row(r.extras.water && !r.of_water_alone() ? "deepest at the end, without free water" : "deepest at the end",
                 fmt::format("{:.4g} m", r.final_depth));
     text += row("mean speed at the end", fmt::format("{:.3g} m/s", s.last.mean_speed));
     if (r.extras.breakage) {
@@ -132,6 +134,18 @@ std::string results(const RunRecord& r) {
     return text + "\n";
 }
 
+std::string water_text(const RunRecord& r) {
+    const WaterBudget& w = *r.extras.water;
+    const std::string fed = w.fed > 0.0 ? fmt::format("{:.8g} by inflows, ", w.fed) : "";
+    const std::string in_columns =
+        r.of_water_alone() ? "" : fmt::format(" and {:.8g} in columns (these released {:.4g})", w.confined, w.released);
+    return fmt::format(
+        "Water [m3]: {:.8g} at the start, {}{:.4g} of rain and {:.4g} from a lake beyond open sides; now {:.8g} "
+        "free{}, "
+        "{:.4g} infiltrated, {:.4g} left; residual {:.1e}.\n\n",
+        w.given, fed, w.rained, w.entered, w.free, in_columns, w.infiltrated, w.left, w.residual);
+}
+
 std::string budgets(const RunRecord& r) {
     const RunSummary& s = r.summary;
     const Budget b = budget(s.first, s.last);
@@ -159,19 +173,13 @@ std::string budgets(const RunRecord& r) {
     if (const double given = s.last.bed.energy - s.first.bed.energy; given != 0.0)
         text += fmt::format("| of it the bed gave [J] | | {:.5g} | | |\n", given);
     if (came > 0.0) text += "\nOf momentum and energy, what came in is taken off what left.\n";
-    text += fmt::format(
-        "\nOf the energy at the end, {:.4g} J are kinetic; {:.4g} J were dissipated. Particles to grid, "
-        "worst step: mass {:.1e}, momentum {:.1e} (relative).\n\n",
-        s.last.kinetic, s.last.dissipated, s.extremes.p2g_mass_error, s.extremes.p2g_momentum_error);
-    if (r.extras.water) {
-        const WaterBudget& w = *r.extras.water;
-        text += fmt::format(
-            "Water [m3]: {:.8g} at the start, {:.4g} of rain and {:.4g} from a lake beyond open sides; now {:.8g} free "
-            "and {:.8g} in columns (these released "
-            "{:.4g}), "
-            "{:.4g} infiltrated, {:.4g} left; residual {:.1e}.\n\n",
-            w.given, w.rained, w.entered, w.free, w.confined, w.released, w.infiltrated, w.left, w.residual);
-    }
+    text += fmt::format("\nOf the energy at the end, {:.4g} J are kinetic; {:.4g} J were dissipated.", s.last.kinetic,
+                        s.last.dissipated);
+    if (!r.of_water_alone())
+        text += fmt::format(" Particles to grid, worst step: mass {:.1e}, momentum {:.1e} (relative).",
+                            s.extremes.p2g_mass_error, s.extremes.p2g_momentum_error);
+    text += "\n\n";
+    if (r.extras.water) text += water_text(r);
     const Status::In3d& points = s.last.in_3d;
     if (points.friction != 0.0 || points.walls != 0.0 || points.material != 0.0 || points.numerical != 0.0)
         text += fmt::format(
@@ -196,11 +204,11 @@ std::string figures(const RunRecord& r) {
 std::string parameter_table(const RunRecord& r) {
     std::string text = "## What was run\n\n| Key | Value | Unit |\n|---|---|---|\n";
     for (const GivenKey& key : r.given) text += fmt::format("| `{}` | {} | {} |\n", key.key, cell(key.value), key.unit);
-    text += fmt::format(
-        "\nThe grid has {} x {} nodes, {:.6g} m apart; {} particles at the start, {} at the end. "
-        "Keys that are not listed have their defaults: see `resolved.toml`.\n\n",
-        r.grid.nx, r.grid.ny, r.grid.cell, r.particles, r.summary.last.particles);
-    return text;
+    text += fmt::format("\nThe grid has {} x {} nodes, {:.6g} m apart; ", r.grid.nx, r.grid.ny, r.grid.cell);
+    text += r.of_water_alone()
+                ? "there are no particles: the water is on its cells. "
+                : fmt::format("{} particles at the start, {} at the end. ", r.particles, r.summary.last.particles);
+    return text + "Keys that are not listed have their defaults: see `resolved.toml`.\n\n";
 }
 
 bool is_there(const std::vector<Product>& products, const std::string& path) {
@@ -376,8 +384,9 @@ std::string times(const RunSummary& s) {
     for (const PhaseTime& part : s.output) add("output: " + part.name, part.seconds);
     add("all output", s.output_seconds());
     add("**whole run**", s.wall_seconds);
-    text += fmt::format("\n{:.3g} million particle-steps a second.\n\n", 1e-6 * s.particle_steps / total);
-    return text;
+    if (s.particle_steps > 0.0)
+        text += fmt::format("\n{:.3g} million particle-steps a second.\n", 1e-6 * s.particle_steps / total);
+    return text + "\n";
 }
 
 std::string remarks(const RunRecord& r) {
@@ -405,15 +414,18 @@ std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_d
     };
     std::string text;
     text += fmt::format("{}: {} (t = {:.6g} s)\n", r.title, reason_text(r), s.last.time);
-    text +=
-        fmt::format("  computed   {} steps, {} particles, {:.3g} M particle-steps/s, {} ({:.0f} % output)\n", s.steps,
-                    s.last.particles, s.wall_seconds > 0.0 ? 1e-6 * s.particle_steps / s.wall_seconds : 0.0,
-                    clock_text(s.wall_seconds), 100.0 * s.output_share());
+    const std::string particles =
+        r.of_water_alone() ? ""
+                           : fmt::format("{} particles, {:.3g} M particle-steps/s, ", s.last.particles,
+                                         s.wall_seconds > 0.0 ? 1e-6 * s.particle_steps / s.wall_seconds : 0.0);
+    text += fmt::format("  computed   {} steps, {}{} ({:.0f} % output)\n", s.steps, particles,
+                        clock_text(s.wall_seconds), 100.0 * s.output_share());
     const double came = mass_came_in(s.first, s.last);
-    const std::string later =
-        !(came > 0.0)    ? ""
-        : r.extras.water ? fmt::format("; {:.6g} m3 of water came in", r.extras.water->rained + r.extras.water->entered)
-                         : fmt::format("; {:.6g} m3 came in later", came / r.density);
+    const std::string later = !(came > 0.0) ? ""
+                              : r.extras.water
+                                  ? fmt::format("; {:.6g} m3 of water came in",
+                                                r.extras.water->rained + r.extras.water->entered + r.extras.water->fed)
+                                  : fmt::format("; {:.6g} m3 came in later", came / r.density);
     text += fmt::format("  released   {:.6g} m3{}; {} left the domain; mass error {:.1e}\n", r.release_volume, later,
                         left_text(r), budget(s.first, s.last).mass_error);
     text += fmt::format("  deepest    {:.4g} m, fastest {:.4g} m/s, front at {:.5g} m\n", s.extremes.max_depth,

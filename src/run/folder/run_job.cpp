@@ -73,7 +73,7 @@ void note_simulation(RunRecord& record, const Scene& scene, const Simulation& si
     record.extras = simulation.extras();
     for (const std::string& remark : simulation.remarks()) record.warnings.push_back(remark);
     if (const Friction* used = simulation.friction()) record.friction = used->parts, record.friction_of_part = true;
-    if (!record.extras.water)
+    if (!record.extras.water || record.of_water_alone())  // of which the scene's particles tell a part only
         record.release_volume = (record.summary.first.mass - record.summary.first.mass_in) / scene.density;
 }
 

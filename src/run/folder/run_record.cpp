@@ -45,7 +45,8 @@ std::string caption_of(const Scene& scene, const std::vector<GivenKey>& given) {
         std::string value = key.value;
         value.erase(std::remove(value.begin(), value.end(), '"'), value.end());
         if (value.size() > 2 && value.compare(value.size() - 2, 2, ".0") == 0) value.resize(value.size() - 2);
-        const bool has_unit = !key.unit.empty() && key.unit != "1";
+        const bool word = !key.value.empty() && key.value.front() == '"';
+        const bool has_unit = !key.unit.empty() && key.unit != "1" && !word;
         text += fmt::format("{} {}{}{}, ", material ? key.key.substr(9) : key.key, value, has_unit ? " " : "",
                             has_unit ? key.unit : "");
     }
@@ -312,10 +313,11 @@ Json water_json(const WaterBudget& w) {
             {"released", w.released},
             {"rained", w.rained},
             {"entered", w.entered},
+            {"fed", w.fed},
             {"infiltrated", w.infiltrated},
             {"left_domain", w.left},
             {"residual", w.residual},
-            {"relative_error", w.residual / std::max(w.given + w.rained + w.entered, 1e-300)},
+            {"relative_error", w.residual / std::max(w.given + w.rained + w.entered + w.fed, 1e-300)},
             {"energy_lost", {{"unit", "J"}, {"bed", w.bed}, {"viscosity", w.viscosity}, {"drag", w.drag}}},
             {"column_steps_per_water_step", w.steps}};
 }

@@ -70,6 +70,9 @@ struct RunRecord {
     Extras extras;
     std::vector<std::string> warnings;
     std::vector<std::string> files;  ///< that the run made, relative to its folder: run/folder/run_folder.h
+
+    /// Whether free water is all that there was.
+    bool of_water_alone() const { return extras.water && !extras.breakage; }
 };
 
 /// What the scene and its case file contribute.

@@ -224,7 +224,7 @@ RunState read_run_state(const fs::path& run_dir, double time) {
     RunState state = vtk ? state_of_vtk(run_dir, time) : state_of_hdf5(run_dir, time);
     if (state.columns.count() == 0)
         throw UserError(
-            fmt::format("{}: has no particles at {:.6g} s: everything has left the terrain; give an earlier "
+            fmt::format("{}: has no particles at {:.6g} s: all is free water, or has left the terrain; give an earlier "
                         "--time",
                         state.frames, state.time));
     state.bed.crs_wkt = crs_of(run_dir);
