@@ -79,9 +79,7 @@ PeakSpeeds peak_speeds(const Scene& scene) { return peak_speeds(*make_simulation
 }  // namespace
 
 // Along each cell's own slope the percentile was 41.8 m/s on cells of 10 m, 43.4 of 5 m and 48.2 of 2.5 m. Peaks that hazard
-// maps are drawn by may change by 3 % at most, from cells that resolve the flow on. Cells of 10 m do not: the flow is six of
-// them wide. With 4, 9 and 16 particles a cell the percentile is 40.4, 40.9 and 39.9 m/s there, so up to 6.3 % lower than on
-// 5 m. Noise moves it by 0.4 m/s, which is allowed besides (mu 0.1 % up or down).
+// maps are drawn by may change by 3 % at most. While thin fronts dragged as their smeared depth says, it was 40.4 m/s on 10 m.
 TEST_CASE("The peak speeds of the Ryggfonn avalanche do not grow with finer cells", "[real]") {
     const auto folder = shared_data("ryggfonn_2021");
     if (!folder) return;
@@ -89,8 +87,7 @@ TEST_CASE("The peak speeds of the Ryggfonn avalanche do not grow with finer cell
                      fine = peak_speeds(ryggfonn(*folder, 2.5));
     CAPTURE(coarse.high, middle.high, fine.high, coarse.over_line, middle.over_line, fine.over_line);
     CHECK(std::abs(fine.high - middle.high) < 0.03 * fine.high);
-    CHECK(std::abs(middle.high - coarse.high) < 0.073 * middle.high);
-    CHECK(std::abs(fine.high - middle.high) < 0.5 * std::abs(middle.high - coarse.high));
+    CHECK(std::abs(middle.high - coarse.high) < 0.03 * middle.high);
     for (const PeakSpeeds& peaks : {coarse, middle, fine}) CHECK(peaks.over_line < 1.01);
 }
 

@@ -376,6 +376,20 @@ void depth_of_four(Flow& flow, const DepthRequest& request, Index k, Index i, In
     sums.front2 = max(sums.front2, select(covered, (dx * dx + dy * dy) * flow.area, none));
 }
 
+/// THEORY, section 6: the depth that the bed law is given at a margin. Shape functions spread a front over nodes beyond it,
+/// whose depth is a small part of the front's. Taken for the flow's own, it would give drag that grows as depth falls a hold
+/// on the front that it has not: the flow behind would pile up on it. So the depth is that of the mass around, if that is
+/// more.
+double depth_at_margin(const double* h, Index up) {
+    double sum = 0.0, square = 0.0;
+    for (Index dj = -1; dj <= 1; ++dj)
+        for (Index di = -1; di <= 1; ++di) {
+            const double near = h[dj * up + di];
+            sum += near, square += near * near;
+        }
+    return square > *h * sum ? square / sum : *h;
+}
+
 }  // namespace
 
 NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
@@ -417,7 +431,7 @@ void mark_margin(Flow& flow) {
             const std::uint32_t r = wet.row[j];
             across[j] = r & (r << 1) & (r << 2) & (r >> 1) & (r >> 2);
         }
-        const Index i0 = flow.grid.tile_i(tile), j0 = flow.grid.tile_j(tile);
+        const Index i0 = flow.grid.tile_i(tile), j0 = flow.grid.tile_j(tile), up = flow.grid.stride();
         for (Index j = 0; j < kTile; ++j) {
             const std::uint32_t here = nodes_in(in_reach >> (4 * j) & 0xf);
             if (!here) continue;
@@ -425,12 +439,17 @@ void mark_margin(Flow& flow) {
             const std::uint32_t wide_y = r[0] & r[1] & r[2] & r[3] & r[4];
             const std::uint32_t* a = across + j;
             const std::uint32_t inner = a[0] & a[1] & a[2] & a[3] & a[4];
-            std::uint8_t* flags = flow.nodes.flags.data() + flow.grid.at(i0, j0 + j);
+            const Index first = flow.grid.at(i0, j0 + j);
+            std::uint8_t* flags = flow.nodes.flags.data() + first;
+            const double* depth = flow.nodes.depth.data() + first;
             for (Index i = 0; i < kTile; ++i) {
                 const std::uint32_t bit = 1u << (i + 2);
                 if (!(r[2] & here << 2 & bit)) continue;
                 std::uint8_t flag = flags[i] & (kWet | kMoving);
-                if (!(inner & bit)) flag |= kMargin;
+                if (!(inner & bit)) {
+                    flag |= kMargin;
+                    if (flow.scheme.margin) flow.nodes.law_depth[first + i] = depth_at_margin(depth + i, up);
+                }
                 any |= flag;
                 if (a[2] & bit) flag |= kWideX;
                 if (wide_y & bit) flag |= kWideY;
