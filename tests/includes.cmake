@@ -85,7 +85,7 @@ room(src/scene base terrain law law/bed law/erosion law/rheology particles conve
 # The models.
 room(src/shallow base law/bed law/rheology observe run mpm scene)
 room(src/solid3d base terrain law observe mpm)
-room(src/water base law observe mpm)
+room(src/water base law law/bed observe mpm)
 room(src/structured base law law/bed observe mpm shallow water)
 room(src/coupling base terrain observe particles convert run mpm scene shallow solid3d water structured)
 # What is asked of them.

@@ -321,6 +321,8 @@ TwoPhaseScene two_phase_scene(const Scene& scene) {
     set_edges(scene, w);
     if (s.columns.curved) w.curvature = curvature_of(s.columns);
     w.friction = of.friction, w.viscosity = of.viscosity;
+    if (s.alone && !std::holds_alternative<bed::None>(scene.bed_law)) w.bed_law = scene.bed_law;
+    w.density = scene.density;
     w.gravity = scene.gravity;
     return s;
 }

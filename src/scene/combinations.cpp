@@ -141,8 +141,19 @@ void add_water_alone(std::vector<Combination>& table) {
     };
     refuse({"material.density", Are::given}, "expected none: what is released and comes in is water",
            "remove it, and give water.density if it is not 1000");
-    refuse(is_not("material.bed.law", {"none"}), "expected \"none\": water.friction brakes water",
-           "remove it, and give water.friction");
+    std::vector<Values> one_law = water.also;
+    one_law.push_back(is_not("material.bed.law", {"none"}));
+    for (const char* other : {"water.friction", "water.viscous"})
+        table.push_back({is_not(other, {"none"}),
+                         {water.with},
+                         "expected \"none\": material.bed brakes what flows",
+                         "remove one of them",
+                         " with material.bed",
+                         one_law});
+    refuse({"material.zone", Are::tables}, "expected none: one law brakes what flows as water", "remove it");
+    refuse({"material.bed", Are::rasters}, "expected a number: one law brakes what flows as water", "give a number");
+    refuse(is_not("material.bed.table", {"none"}), "expected \"none\": one law brakes what flows as water",
+           "remove it");
     refuse(is_not("material.rheology.law", {"none"}), "expected \"none\": water has the viscosity of water.viscous",
            "remove it, and give water.viscous");
     refuse({"water.share", Are::above_zero}, "expected 0: all that is released is water", "remove it");

@@ -299,6 +299,7 @@ private:
     /// xi = 8 g / f.
     BedLaw law() const {
         if (!water_) return bed_law_at(scene_, inflow_.middle());
+        if (case_.word("material.bed.law") != "none") return scene_.bed_law;
         const WaterFriction of = water_friction(case_);
         if (of.law == WaterFriction::Law::manning) return bed::Manning{of.coefficient};
         if (of.law == WaterFriction::Law::none) return bed::None{};

@@ -109,7 +109,7 @@ void set_physics(const CaseFile& file, Scene& scene) {
     scene.output = output_of(file);
     if (water_alone(file)) {
         scene.density = file.number("water.density");
-        if (file.word("water.friction") == "none")
+        if (file.word("water.friction") == "none" && file.word("material.bed.law") == "none")
             scene.log.push_back("water.friction is not given: the bed is without friction");
     } else if (!file.given("material.bed.law"))
         scene.log.push_back("material.bed.law is not given: the bed is without friction");

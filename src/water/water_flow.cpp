@@ -90,6 +90,8 @@ WaterBody::WaterBody(const WaterScene& scene)
       sides(scene.sides),
       friction(scene.friction),
       viscosity(scene.viscosity),
+      bed_law(scene.bed_law),
+      density(scene.density),
       gravity(scene.gravity),
       theta(scene.theta),
       film(scene.film),

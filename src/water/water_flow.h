@@ -10,6 +10,7 @@
 
 #include "base/clock.h"
 #include "base/constants.h"
+#include "law/bed/laws.h"
 #include "law/free_water.h"
 #include "law/water_friction.h"
 #include "mpm/step_clock.h"
@@ -60,6 +61,9 @@ struct WaterScene {
     std::vector<WaterSource> sources;
     WaterFriction friction;
     WaterViscosity viscosity;
+    /// Brakes in place of both where there is one: what flows may be mud, or an avalanche.
+    std::optional<BedLaw> bed_law;
+    double density = 1000.0;               ///< that the bed law is given [kg/m^3]
     double gravity = constants::kGravity;  ///< [m/s^2]
     /// Gravity across the ground is g / (1 + |grad b|^2), as for solids (structured/ground.h), so that thin
     /// water slides down a steep plane as a block does; else g, which are the shallow-water equations as they
@@ -146,6 +150,8 @@ struct WaterBody {
     std::array<WaterSide, 4> sides;
     WaterFriction friction;
     WaterViscosity viscosity;
+    std::optional<BedLaw> bed_law;
+    double density;
     double gravity, theta, film;
     double datum;  ///< lets water high above the sea keep its digits [m]
     static constexpr double kNoLake = -std::numeric_limits<double>::max();

@@ -279,12 +279,17 @@ Vec2 bed_slope(const WaterBody& body, Index k) {
            Vec2(body.bed[k + 1] - body.bed[k - 1], body.bed[k + body.grid.stride()] - body.bed[k - body.grid.stride()]);
 }
 
-/// What turns water of depth h and velocity (u, v) along a bed that bends, over the density [m^2/s^2]: the part of v.H.v that
-/// does no work (shallow/grid_update_bed.h). Where water would fly, its weight at most.
-Vec2 turning_force(const WaterBody& body, Index k, double h, double u, double v) {
-    const BedCurvature& of = body.curvature[k];
-    const double rises = u * u * of.xx + 2.0 * u * v * of.xy + v * v * of.yy;
-    return -h * std::max(rises, -body.gravity) * body.normal_gravity[k] / body.gravity * bed_slope(body, k);
+/// v.H.v: vertical acceleration of what follows a bed that bends [m/s^2]
+double rise_of_path(const BedCurvature& of, const Vec2& v) {
+    return v.x() * v.x() * of.xx + 2.0 * v.x() * v.y() * of.xy + v.y() * v.y() * of.yy;
+}
+
+/// What fluxes leave out of the push on water of depth h and velocity v over steep ground, over the density [m^2/s^2]:
+/// THEORY, section 2. Where water would fly, its weight is none. `slope`: of the surface, as limited.
+Vec2 steep_force(const WaterBody& body, Index k, double h, const Vec2& v, const Vec2& slope) {
+    const double weight = std::max(0.0, body.gravity + rise_of_path(body.curvature[k], v));
+    const double climbs = std::max(0.0, bed_slope(body, k).dot(slope));
+    return h * (body.normal_gravity[k] - weight / (1.0 + climbs)) * slope;
 }
 
 /// Runs a stage from fields on a tile: each(storage index, i, j, change) for its cells, and the half of what
@@ -310,8 +315,9 @@ void run_stage(const WaterBody& body, const WaterFields& from, Index tile, doubl
             const Index k = b * kRow + a;
             Change change = moves ? change_of(s, k, cells) : Change{0.0, 0.0, 0.0, Vec2(0, 0)};
             if (moves && body.curvature) {
-                const Vec2 turned =
-                    dt * turning_force(body, body.grid.at(i, j), s.block.depth[k], s.block.u[k], s.block.v[k]);
+                const Vec2 slope = 1.0 / body.grid.cell() * Vec2(s.across_x.surface[k], s.across_y.surface[k]);
+                const Vec2 turned = dt * steep_force(body, body.grid.at(i, j), s.block.depth[k],
+                                                     Vec2(s.block.u[k], s.block.v[k]), slope);
                 change.qx += turned.x(), change.qy += turned.y(), change.pressure_force += turned;
             }
             tile_ledger.ground += change.pressure_force;
@@ -328,13 +334,22 @@ struct Water {
 
 /// Something slows water at the bed.
 bool brakes_of(const WaterBody& body) {
-    return body.friction.law != WaterFriction::Law::none || body.viscosity.kinematic > 0.0;
+    return body.bed_law || body.friction.law != WaterFriction::Law::none || body.viscosity.kinematic > 0.0;
 }
 
 /// Velocity at the start of the step, none of a film.
 Vec2 velocity_before(const WaterBody& body, Index k) {
     const double h = body.now.h[k];
     return h > body.film ? Vec2(Vec2(body.now.qx[k], body.now.qy[k]) / h) : Vec2(0, 0);
+}
+
+/// What a bed law sees of a cell that flows in a direction at a speed, on the map [m/s].
+BedState seen_by_law(const WaterBody& body, Index k, double h, const Vec2& direction, double speed) {
+    const double cosine = body.steep ? std::sqrt(body.normal_gravity[k] / body.gravity) : 1.0;
+    const double along = body.steep ? direction.dot(bed_slope(body, k)) : 0.0, kappa = std::sqrt(1.0 + along * along);
+    double weight = body.gravity;
+    if (body.curvature) weight = std::max(0.0, weight + rise_of_path(body.curvature[k], speed * direction));
+    return {weight * cosine / kappa, std::max(h * cosine, 1e-9), kappa, cosine, body.gravity, body.density};
 }
 
 /// Friction over a step, exact for a constant drive (law/friction_step.h), on water deeper than a film. Viscosity shears all
@@ -344,6 +359,14 @@ void brake(const WaterBody& body, Index k, double dt, Water& w) {
     const double discharge = q.norm();
     if (!brakes_of(body) || discharge == 0.0) return;
     const Vec2 direction = q / discharge;
+    const double start = std::max(0.0, velocity_before(body, k).dot(direction));
+    if (body.bed_law) {
+        const BedState seen = seen_by_law(body, k, w.h, direction, start);
+        const double left = std::visit(
+            [&](const auto& law) { return law.speed_after(seen, start, discharge / w.h, dt); }, *body.bed_law);
+        w.qx = left * w.h * direction.x(), w.qy = left * w.h * direction.y();
+        return;
+    }
     WaterBed bed{body.gravity, w.h, 1.0};
     double whole = w.h + body.confined[k];
     if (body.steep) {
@@ -351,7 +374,6 @@ void brake(const WaterBody& body, Index k, double dt, Water& w) {
                      cosine = std::sqrt(body.normal_gravity[k] / body.gravity);
         bed.thickness *= cosine, whole *= cosine, bed.kappa = std::sqrt(1.0 + along * along);
     }
-    const double start = std::max(0.0, velocity_before(body, k).dot(direction));
     const double speed = braked_speed(start, discharge / w.h, linear_drag(body.viscosity, whole),
                                       quadratic_drag(body.friction, bed), dt);
     w.qx = speed * w.h * direction.x(), w.qy = speed * w.h * direction.y();
