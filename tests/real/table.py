@@ -4,7 +4,7 @@
     python3 tests/real/table.py build/bin/frana DATA OUT [NAME ...]
 
 reads terrain and surveys in DATA where they lie and leaves its runs in OUT; what is there is not run again. Names pick rows:
-ryggfonn, alr, waves, codes, rest, friction, reach, deposit, torrents, grown. Needs numpy and GDAL's module. The table stands in src/checks/verify/README.md.
+ryggfonn, alr, waves, volumes, codes, rest, friction, reach, deposit, torrents, grown. Needs numpy and GDAL's module. The table stands in src/checks/verify/README.md.
 """
 import json
 import math
@@ -222,6 +222,38 @@ def waves_on_alr():
         row(f"Alr, {what}: sum of peak thickness over com1DFA's from 2200 and from 1200 m, on 10, 5, 2.5 m", "", "; ".join(sums))
 
 
+def as_volumes(text):
+    """The same case by finite volumes: the scheme of free water, by the bed law of the case."""
+    density = text.split("density = ")[1].split()[0]
+    return text.replace(f"density = {density}\n", "") + f'[water]\nmodel = "free"\ndensity = {density}\n'
+
+
+def means_from_the_south_west(raster, count):
+    """Means over blocks of count x count pixels."""
+    field = numpy.nan_to_num(raster.array)[::-1]
+    rows, columns = (n // count * count for n in field.shape)
+    return field[:rows, :columns].reshape(rows // count, count, columns // count, count).mean((1, 3))
+
+
+def beside_finite_volumes():
+    """Peak depths of both schemes, on their cells and on half of them, from finite volumes on half: relative L1, over blocks of
+    the larger cells; footprints' intersection over union; sums."""
+    for name, case, cells in (("frank", lambda cell: frank(end=150, at_rest=False, extra=f"[grid]\ncell = {cell}\n"), (20, 10)),
+                              ("ryggfonn", lambda cell: ryggfonn(cell, end=60, at_rest=False), (5, 2.5)),
+                              ("olivares_33", lambda cell: olivares(33, end=60, at_rest=False,
+                                                                    extra=f"[grid]\ncell = {cell}\n"), (12.5, 6.25))):
+        runs = {(way, cell): run(f"{name}_{way}_{cell:g}m", case(cell) if way == "columns" else as_volumes(case(cell)))
+                for cell in cells for way in ("columns", "volumes")}
+        blocks = {key: means_from_the_south_west(folder["peak_depth"], round(cells[0] / key[1])) for key, folder in runs.items()}
+        rows, columns = (min(b.shape[axis] for b in blocks.values()) for axis in (0, 1))
+        blocks = {key: b[:rows, :columns] for key, b in blocks.items()}
+        fine = blocks["volumes", cells[1]]
+        for key, b in blocks.items():
+            both = ((b > SHOWN) & (fine > SHOWN)).sum() / ((b > SHOWN) | (fine > SHOWN)).sum()
+            row(f"{name}, {key[0]} on {key[1]:g} m: peak depth from finite volumes on {cells[1]:g} m (relative L1; sum; IoU)", "",
+                f"{numpy.abs(b - fine).sum() / fine.sum():.3f}; {b.sum() / fine.sum():.2f}; {both:.2f}")
+
+
 def on(target, source):
     """A raster's values at the pixels of another with the same cells; 0 elsewhere."""
     rows, columns = target.array.shape
@@ -348,7 +380,7 @@ def deposits():
         f"{apart(first, second, round(20 / first['final_depth'].cell)):.1f}")
 
 
-ROWS = {"ryggfonn": peaks_on_ryggfonn, "alr": compare_on_alr, "waves": waves_on_alr, "codes": compare_with_codes, "rest": rest_is_rest,
+ROWS = {"ryggfonn": peaks_on_ryggfonn, "alr": compare_on_alr, "waves": waves_on_alr, "volumes": beside_finite_volumes, "codes": compare_with_codes, "rest": rest_is_rest,
         "friction": rest_for_any_friction,
         "reach": reach, "deposit": deposits, "torrents": growth_of_torrents, "grown": growth_on_cells}
 

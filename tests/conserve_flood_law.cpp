@@ -1,0 +1,81 @@
+// What flows as water alone by a bed law of columns: a second scheme for their equations. Exact answers, and what is refused.
+#include <cmath>
+
+#include "coupling/structured_run.h"
+#include "scene/build_scene.h"
+#include "slope_case.h"
+
+namespace frana::flood_law_test {  // its names are other files' too
+using namespace frana::test;
+
+namespace {
+
+constexpr double kSlope = 0.5, kCell = 1.0, kDepth = 1.0;
+constexpr Index kNx = 160, kNy = 5;
+
+/// A plane that falls to the east, all of it covered.
+FakeGis covered_plane() {
+    FakeGis gis;
+    gis.rasters["dem.tif"] =
+        sampled({kNx, kNy, 0.5 * kCell, 0.5 * kCell, kCell}, [](double x, double) { return 500.0 - kSlope * x; });
+    gis.polygons["release.geojson"] = rectangle(0.0, 0.0, kNx * kCell, kNy * kCell);
+    return gis;
+}
+
+Scene scene_by(const std::string& law, const std::string& more = "") {
+    return build_scene(
+        CaseFile::parse("[terrain]\ndem = \"dem.tif\"\n[time]\nend = 100\n[water]\nmodel = \"free\"\n" + more +
+                            "[material.bed]\n" + law + "[[release]]\noutline = \"release.geojson\"\ndepth = 1.0\n",
+                        "flood/case.toml"),
+        covered_plane());
+}
+
+/// Depth [m] and speed on the map [m/s] of a cell in the middle of the plane's width.
+struct Cell {
+    double depth, speed;
+};
+Cell cell_at(Simulation& run, Index i) {
+    const Frame frame = run.frame();
+    const Index k = 2 * kNx + i;
+    return {frame.node("depth")->data[k], frame.node("velocity")->data[3 * k]};
+}
+
+}  // namespace
+
+TEST_CASE("A sheet by Voellmy's law runs down a plane to its end speed as water alone", "[water][alone]") {
+    constexpr double mu = 0.2, xi = 500.0, end = 3.0;
+    const std::unique_ptr<Simulation> run = make_simulation(scene_by("law = \"voellmy\"\nmu = 0.2\nxi = 500.0\n"));
+    while (run->status().time < end) run->advance(end);
+    const double steep = std::sqrt(1.0 + kSlope * kSlope), drive = (kSlope - mu) / steep,
+                 fastest = std::sqrt(xi * kDepth / steep * drive);
+    const double along = fastest * std::tanh(9.81 * drive * end / fastest);
+    // The front of the wave from the upper edge, which runs at the flow's speed and that of waves, has come 35 m far.
+    const Cell cell = cell_at(*run, 120);
+    CHECK(cell.depth == Approx(kDepth).epsilon(1e-9));
+    CHECK(cell.speed == Approx(along / steep).epsilon(1e-3));  // second order in steps of 0.05 s, of a time of 2 s
+}
+
+TEST_CASE("A sheet that its bed holds stands as water alone", "[water][alone]") {
+    const std::unique_ptr<Simulation> run =
+        make_simulation(scene_by("law = \"coulomb\"\nmu = 0.6\n", "[boundary]\nsides = \"wall\"\n"));
+    while (run->status().time < 5.0) run->advance(5.0);
+    for (const Index i : {60, 80, 100}) {
+        CHECK(cell_at(*run, i).speed == 0.0);
+        CHECK(cell_at(*run, i).depth == Approx(kDepth).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("Water alone has one law: water.friction, or a bed law that is the same everywhere",
+          "[water][alone][scene]") {
+    const auto problem = [](const std::string& law, const std::string& more) {
+        return only_problem([&] { scene_by(law, more); });
+    };
+    CHECK(problem("law = \"coulomb\"\nmu = 0.6\n", "friction = \"manning\"\nmanning_n = 0.03\n")
+              .find("material.bed brakes what flows") != std::string::npos);
+    CHECK(problem("law = \"coulomb\"\nmu = 0.6\n", "viscous = \"clear\"\n").find("material.bed brakes what flows") !=
+          std::string::npos);
+    CHECK(problem("law = \"coulomb\"\nmu = 0.6\n", "[[material.zone]]\nbelow = 450\nmu = 0.3\n")
+              .find("one law brakes what flows as water") != std::string::npos);
+}
+
+}  // namespace frana::flood_law_test
