@@ -56,7 +56,8 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
     map.survey = source.survey;
     map.barriers = barrier_plans(source.barriers);
     for (const Profile& profile : source.profiles) map.profiles.push_back({profile.name, profile.line});
-    for (const Section& section : source.sections) map.profiles.push_back({section.name, section.line});
+    for (const Section& section : source.sections)
+        if (!section.line.empty()) map.profiles.push_back({section.name, section.line});
     if (!source.sections.empty()) map.profiles_are = source.profiles.empty() ? "section" : "profile, section";
     for (const Gauge& gauge : source.gauges) map.gauges.push_back({gauge.name, gauge.point});
     map.footer = source.footer;
