@@ -96,7 +96,7 @@ int compare_command(const CompareOptions& options) {
     write_text(options.run_dir / "compare.md", page(source, comparison, figures));
 
     if (bed_known && fs::exists(options.run_dir / "grid.pvd")) {
-        write_survey(options.run_dir, source.bed, find_product(source.rasters, "peak_depth")->raster, comparison.limit,
+        write_survey(options.run_dir, source.bed, *ever_covered(source.rasters), comparison.limit,
                      rings_of(*source.survey));
         write_states(options.run_dir, source.title);
     }

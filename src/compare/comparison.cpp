@@ -30,12 +30,12 @@ public:
 
     Comparison all() {
         choose_path();
-        result_.outline = pixel_outline(*run_.peak_depth, run_.limit);
-        result_.trace = scores(*run_.peak_depth, result_.outline);
-        if (run_.final_depth) {
-            lying_ = with_deposit(*run_.final_depth, run_.deposited_depth);
-            result_.final = scores(*lying_, pixel_outline(*lying_, run_.limit));
-        }
+        if (run_.final_depth) lying_ = with_deposit(*run_.final_depth, run_.deposited_depth);
+        const bool buried = lying_ && run_.deposited_depth;
+        const Raster ever = buried ? deepest_cover(*run_.peak_depth, *lying_) : *run_.peak_depth;
+        result_.outline = pixel_outline(ever, run_.limit);
+        result_.trace = scores(ever, result_.outline);
+        if (lying_) result_.final = scores(*lying_, pixel_outline(*lying_, run_.limit));
         if (!result_.path.empty()) {
             result_.surveyed_runout = reach_along(result_.path, rings_, result_.cell);
             result_.surveyed_reach = farthest_from(result_.path.front(), rings_);

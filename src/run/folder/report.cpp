@@ -48,17 +48,20 @@ std::string left_text(const RunRecord& r) {
 }
 
 /// "took 12 300 m3 (growth 1.8), 0.7 m deep at most, budget 3e-16": volumes as they are in the flow. What it grew from is
-/// what was released and came in.
+/// what was released and came in, by what the bed of the start gave: what is left and taken again is not new.
 std::string bed_text(const RunRecord& r) {
     const Status::Bed& bed = r.summary.last.bed;
-    const double given = r.summary.first.mass + mass_came_in(r.summary.first, r.summary.last);
-    return fmt::format(
-        "the flow took {:.6g} m3 of it and of what it had left behind, by the density of the flow (its mass grew "
-        "{}{:.3g} "
-        "times), {:.3g} m "
-        "deep at most; left behind {:.6g} m3; balance {:.1e}",
-        bed.eroded / r.density, bed.deposited > 0.0 ? "at most " : "", given > 0.0 ? (given + bed.eroded) / given : 1.0,
-        bed.deepest, bed.deposited / r.density, budget(r.summary.first, r.summary.last).bed_error);
+    const double given = r.summary.first.mass + mass_came_in(r.summary.first, r.summary.last), again = taken_again(r);
+    std::string text = fmt::format(
+        "the flow took {:.6g} m3 of it, by the density of the flow (its mass grew {:.3g} times), {:.3g} m deep at "
+        "most; "
+        "left behind {:.6g} m3",
+        r.taken_of_bed / r.density, given > 0.0 ? (given + r.taken_of_bed) / given : 1.0, bed.deepest,
+        bed.deposited / r.density);
+    if (bed.deposited > 0.0)
+        text += fmt::format(", of which it took {:.6g} m3 again and {:.6g} m3 lie there at the end", again / r.density,
+                            lies_behind(r) / r.density);
+    return text + fmt::format("; balance {:.1e}", budget(r.summary.first, r.summary.last).bed_error);
 }
 
 /// "9100 m3; by the tables 9100 m3, difference 1e-12; of their 12000 m3 2900 m3 had not come in".
@@ -79,6 +82,15 @@ std::string late_text(const LateEntry& late) {
                            late.at ? "" : ", when the flow reached it");
     return late.at ? fmt::format("{:.6g} m3 did not: the run ended before t = {:.6g} s", late.volume, *late.at)
                    : fmt::format("{:.6g} m3 did not: the flow did not reach it", late.volume);
+}
+
+/// Where material becomes bed, what lies there and what still flows are two depths.
+std::string depths_at_end(const RunRecord& r) {
+    const auto metres = [](double depth) { return fmt::format("{:.4g} m", depth); };
+    if (r.extras.water) return row("deepest at the end, without free water", metres(r.final_depth));
+    if (!(r.summary.last.bed.deposited > 0.0)) return row("deepest at the end", metres(r.final_depth));
+    return row("deepest at the end, with what has become bed", metres(r.final_depth)) +
+           row("deepest flow at the end", metres(r.final_flow_depth));
 }
 
 std::string results(const RunRecord& r) {
@@ -102,8 +114,7 @@ std::string results(const RunRecord& r) {
     if (std::isfinite(r.flow_width))
         text += row("width of the flow, median over its length",
                     fmt::format("{:.4g} m, {:.3g} cells", r.flow_width, r.flow_width / r.grid.cell));
-    text += row(r.extras.water ? "deepest at the end, without free water" : "deepest at the end",
-                fmt::format("{:.4g} m", r.final_depth));
+    text += depths_at_end(r);
     text += row("mean speed at the end", fmt::format("{:.3g} m/s", s.last.mean_speed));
     if (r.extras.breakage) {
         const Breakage& b = *r.extras.breakage;
@@ -418,8 +429,9 @@ std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_d
                         left_text(r), budget(s.first, s.last).mass_error);
     text += fmt::format("  deepest    {:.4g} m, fastest {:.4g} m/s, front at {:.5g} m\n", s.extremes.max_depth,
                         s.extremes.max_speed, s.extremes.max_front);
-    text += fmt::format("  covered    {:.5g} m2 deeper than {:.3g} m; deepest at the end {:.4g} m\n", r.footprint_area,
-                        r.footprint_depth, r.final_depth);
+    text +=
+        fmt::format("  covered    {:.5g} m2 deeper than {:.3g} m; deepest at the end {:.4g} m{}\n", r.footprint_area,
+                    r.footprint_depth, r.final_depth, s.last.bed.deposited > 0.0 ? ", with what became bed" : "");
     if (r.comparison) text += fmt::format("  survey     {}\n", comparison_line(*r.comparison));
     text += fmt::format("  report     {}\n", place("report.md"));
     text += fmt::format("  pictures   {}\n", r.figures.empty() ? "-" : (run_dir / "figures").string());

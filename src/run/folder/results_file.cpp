@@ -20,10 +20,10 @@ std::vector<AttributedShape> outlines_where(const Raster& raster, const Inside& 
     return pixel_outlines(raster.geometry, std::move(marks));
 }
 
-ShapeLayer deeper(const char* layer, const Raster& peak_depth, const std::vector<double>& depths) {
+ShapeLayer deeper(const char* layer, const Raster& covered, const std::vector<double>& depths) {
     ShapeLayer all{layer, {}};
     for (const double depth : depths)
-        for (AttributedShape& shape : outlines_where(peak_depth, [&](double value) { return value > depth; })) {
+        for (AttributedShape& shape : outlines_where(covered, [&](double value) { return value > depth; })) {
             shape.attributes.insert(shape.attributes.begin(), {"depth_m", depth});
             all.shapes.push_back(std::move(shape));
         }
@@ -97,9 +97,9 @@ ShapeLayer barriers(const std::vector<ProductRaster>& rasters, RunRecord& record
 std::vector<ShapeLayer> result_layers(const Scene& scene, const std::vector<ProductRaster>& rasters,
                                       RunRecord& record) {
     std::vector<ShapeLayer> layers{barriers(rasters, record)};
-    if (const ProductRaster* peak = find_product(rasters, "peak_depth")) {
-        layers.push_back(deeper("footprint", peak->raster, {scene.output.footprint_depth}));
-        layers.push_back(deeper("outlines", peak->raster, {0.5, 1.0, 2.0, 5.0}));
+    if (const std::optional<Raster> covered = ever_covered(rasters)) {
+        layers.push_back(deeper("footprint", *covered, {scene.output.footprint_depth}));
+        layers.push_back(deeper("outlines", *covered, {0.5, 1.0, 2.0, 5.0}));
     }
     if (const ProductRaster* arrival = find_product(rasters, "arrival_time"))
         layers.push_back({"release", outlines_where(arrival->raster, [](double time) { return time == 0.0; })});

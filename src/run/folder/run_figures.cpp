@@ -19,6 +19,8 @@ namespace frana {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr const char* kWithBed = "depth at the end, with what has become bed";
+
 /// Outlines stay smooth where there is no terrain.
 std::vector<double> depth_without_gaps(const ProductRaster& depth) {
     std::vector<double> values = depth.raster.values;
@@ -123,11 +125,13 @@ void add_figures(const FigureSource& source, Gallery& gallery) {
         const char* name;
         const char* what;
     };
-    for (const MapRule& rule : {MapRule{"peak_depth", "peak depth"}, MapRule{"peak_speed", "peak speed"},
-                                MapRule{"peak_dynamic_pressure", "peak dynamic pressure"},
-                                MapRule{"arrival_time", "arrival time"}, MapRule{"final_depth", "depth at the end"}})
+    for (const MapRule& rule :
+         {MapRule{"peak_depth", "peak depth"}, MapRule{"peak_speed", "peak speed"},
+          MapRule{"peak_dynamic_pressure", "peak dynamic pressure"}, MapRule{"arrival_time", "arrival time"}})
         if (const ProductRaster* product = find_product(source.rasters, rule.name))
             add_map(source, *product, rule.what, find_product(source.rasters, "peak_depth"), gallery);
+    if (const ProductRaster* lying = find_lying(source.rasters))
+        add_map(source, *lying, lying->name == "final_depth" ? "depth at the end" : kWithBed, nullptr, gallery);
     if (const ProductRaster* damage = find_product(source.rasters, "final_damage"))
         add_map(source, *damage, "damage at the end", find_product(source.rasters, "final_depth"), gallery);
     if (const ProductRaster* water = find_product(source.rasters, "final_water_depth"))
@@ -174,8 +178,9 @@ void add_overlay(const FigureSource& source, Gallery& gallery) {
         map.profiles.clear();
         map.profiles_are = "runout path";
         if (!source.runout_path.empty()) map.profiles.push_back({"runout path", source.runout_path});
-        map.simulated = pixel_outline(peak->raster, source.footprint_depth);
-        const Overlap areas = overlap(peak->raster, source.footprint_depth, rings_of(*source.survey));
+        const Raster covered = *ever_covered(source.rasters);
+        map.simulated = pixel_outline(covered, source.footprint_depth);
+        const Overlap areas = overlap(covered, source.footprint_depth, rings_of(*source.survey));
         map.footer = fmt::format("both {:.0f} m2, simulated only {:.0f} m2, surveyed only {:.0f} m2, IoU {:.3f}; ",
                                  areas.hit, areas.beyond, areas.missed, areas.iou()) +
                      map.footer;

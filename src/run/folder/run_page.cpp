@@ -10,6 +10,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "observe/table.h"
+#include "run/folder/run_film.h"
 #include "run/web/web_page.h"
 #include "scene/case_file.h"
 #include "terrain/part_of.h"
@@ -79,6 +80,7 @@ constexpr DrapeRule kDrapes[] = {
     {"peak_dynamic_pressure", "peak dynamic pressure", "kPa", Colormap::pressure, 1e-3},
     {"arrival_time", "arrival time", "s", Colormap::speed, 1.0},
     {"final_depth", "depth at the end", "m", Colormap::depth, 1.0},
+    {"lying_depth", "depth at the end, with what has become bed", "m", Colormap::depth, 1.0},
     {"bed_change", "change of the bed", "m", Colormap::diverging, 1.0},
 };
 
@@ -87,7 +89,8 @@ std::optional<PageDrape> drape_of(const FigureSource& source, const DrapeRule& r
     const ProductRaster *product = find_product(source.rasters, rule.name),
                         *peak = find_product(source.rasters, "peak_depth");
     if (product == nullptr || peak == nullptr) return {};
-    const bool bed = rule.colours == Colormap::diverging, end = std::string(rule.name) == "final_depth";
+    if (std::string(rule.name) == "final_depth" && product != find_lying(source.rasters)) return {};
+    const bool bed = rule.colours == Colormap::diverging, end = product == find_lying(source.rasters);
     const Raster& extent = end ? product->raster : peak->raster;
     PageDrape drape{rule.name, rule.label, rule.unit, rule.colours, 0.0, 1.0, product->raster};
     bool any = false;
@@ -187,6 +190,7 @@ FlowFrames frames_of_run(const FigureSource& source) {
     for (Index number = 0; number < static_cast<Index>(times.size()); ++number) {
         LoadedFrame frame = read_frame(source.run_dir, number);
         if (!frame.has("depth")) continue;
+        add_deposit(frame);
         std::vector<double>& depth = frame.nodes.at("depth");
         if (frame.has("elevation"))
             for (std::size_t n = 0; n < depth.size(); ++n)
