@@ -177,7 +177,7 @@ void add_friction_table(Table& table) {
     Parameter size = make("material.bed.volume_class", Kind::choice, "",
                           "of the avalanche: tiny below 5000 m3, small below 25000, medium below 60000, large");
     size.choices = {"tiny", "small", "medium", "large"};
-    add(absent(size, "that of the released volume; needed with [[inflow]]"));
+    add(absent(size, "that of the volume of all releases, later ones too; needed with [[inflow]]"));
     add(list("material.bed.altitude_limits", "m", {1000.0, 1500.0},
              "elevations from which on snow has the friction of the middle and of the high zone"));
     add(number("material.bed.curvature_length", "m", not_negative, 50.0,
