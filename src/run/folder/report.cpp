@@ -96,7 +96,11 @@ std::string depths_at_end(const RunRecord& r) {
 std::string results(const RunRecord& r) {
     const RunSummary& s = r.summary;
     std::string text = "## Results\n\n| Quantity | Value |\n|---|---|\n";
-    text += row("release volume", fmt::format("{:.6g} m3", r.release_volume));
+    text += row(r.extras.late.empty() ? "release volume" : "release volume at the start",
+                fmt::format("{:.6g} m3", r.release_volume));
+    if (!r.extras.late.empty())
+        text += row("release volume, with what entered later",
+                    fmt::format("{:.6g} m3", r.release_volume + released_later(r)));
     if (r.extras.inflow) text += row("came in by inflows", inflow_text(*r.extras.inflow));
     for (const LateEntry& late : r.extras.late) text += row("entered later: " + late.name, late_text(late));
     text += row("simulated time",

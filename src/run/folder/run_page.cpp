@@ -50,10 +50,15 @@ std::string end_of(const PlainJson& record) {
     return reason;
 }
 
+/// At the start and later [m3]; runs of an earlier version do not tell the latter.
+double released_in_all(const PlainJson& record) {
+    return record.at("release_volume").get<double>() + record.value("release_volume_later", 0.0);
+}
+
 std::vector<std::pair<std::string, std::string>> facts_of(const PlainJson& record) {
     const PlainJson results = record.at("results"), mass = record.at("budgets").at("mass");
     std::vector<std::pair<std::string, std::string>> facts = {
-        {"Released", measured(record.at("release_volume"), "m\u00b3")},
+        {"Released", measured(released_in_all(record), "m\u00b3")},
         {"Farthest front", measured(results.at("max_front"), "m")},
         {"Largest depth", measured(results.at("max_depth"), "m")},
         {"Largest speed", measured(results.at("max_speed"), "m/s")},

@@ -159,6 +159,7 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     record.case_file = scene.case_file.string();
     record.survey_files = survey_files(file);
     record.barrier_sources = barrier_sources(file);
+    record.release_sources = release_sources(file);
     const std::vector<std::string> formats = file.words("output.formats");
     record.netcdf = std::find(formats.begin(), formats.end(), "netcdf") != formats.end();
     record.given = given_keys(file);
@@ -366,6 +367,7 @@ std::string run_json(const RunRecord& record) {
                  {"grid", {{"nx", record.grid.nx}, {"ny", record.grid.ny}, {"cell", record.grid.cell}}},
                  {"particles", {{"initial", record.particles}, {"final", s.last.particles}}},
                  {"release_volume", record.release_volume},
+                 {"release_volume_later", released_later(record)},
                  {"wall_seconds", time_json(s)},
                  {"particle_steps", s.particle_steps},
                  {"particle_steps_per_second", per_second},

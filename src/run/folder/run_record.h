@@ -12,6 +12,7 @@
 #include "run/folder/barrier_hits.h"
 #include "run/folder/barrier_results.h"
 #include "run/folder/checkpoint.h"
+#include "run/folder/release_results.h"
 #include "run/run_loop.h"
 #include "scene/scene.h"
 #include "scene/survey_files.h"
@@ -60,6 +61,7 @@ struct RunRecord {
     std::optional<Comparison> comparison;  ///< with the survey, when the case gives one
     SurveyFiles survey_files;
     std::vector<BarrierSource> barrier_sources;
+    std::vector<ReleaseSource> release_sources;
     RunSummary summary;
     std::vector<DrawnFigure> figures;
     std::vector<InsituTally> insitu;
