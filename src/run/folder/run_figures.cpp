@@ -14,6 +14,7 @@
 #include "run/folder/run_film.h"
 #include "vtk_io/figures/map_figure.h"
 #include "vtk_io/figures/map_figure_perspective.h"
+#include "vtk_io/figures/map_range.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -70,21 +71,24 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
     return map;
 }
 
-/// What the flow took of its bed and left there, loss blue and gain red, over the flow's extent.
+/// What the flow took of its bed and left there, loss blue and gain red, wherever flow or a change is.
 void add_change_map(const FigureSource& source, Gallery& gallery) {
     const ProductRaster *change = find_product(source.rasters, "bed_change"),
                         *peak = find_product(source.rasters, "peak_depth");
     if (change == nullptr || peak == nullptr) return;
-    double most = 0.0;
-    for (const double value : change->raster.values) most = std::fmax(most, std::abs(value));
-    if (most == 0.0) return;
+    const std::vector<double>& values = change->raster.values;
+    if (std::none_of(values.begin(), values.end(), [](double value) { return std::abs(value) > 0.0; })) return;
     gallery.add({"figures/map_bed_change.png", "change of the bed"},
-                [&source, change, peak, most](const fs::path& png, std::string& why_not) {
+                [&source, change, peak](const fs::path& png, std::string& why_not) {
                     MapFigure map = map_of(source, *change, "change of the bed", nullptr);
                     map.outline_field = depth_without_gaps(*peak);
-                    map.outline_label = "peak depth [m]";
+                    for (std::size_t k = 0; k < map.field.size(); ++k)
+                        if (std::abs(map.field[k]) > 0.0)
+                            map.outline_field[k] = std::max(map.outline_field[k], 2.0 * source.footprint_depth);
+                    map.outline_label = "change of the bed, or flow of [m]";
                     map.colormap = Colormap::diverging;
-                    map.range = {-most, most};
+                    const ColourRange range = colour_range(map.field, 0.0, Colormap::diverging, {});
+                    map.range = {range.low, range.high};
                     return render_map(map, png, why_not);
                 });
 }

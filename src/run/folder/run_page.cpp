@@ -89,7 +89,7 @@ constexpr DrapeRule kDrapes[] = {
     {"bed_change", "change of the bed", "m", Colormap::diverging, 1.0},
 };
 
-/// The part of a raster that was ever covered, in units for people; nothing when there is none.
+/// The part of a raster that was ever covered, or changed, in units for people; nothing when there is none.
 std::optional<PageDrape> drape_of(const FigureSource& source, const DrapeRule& rule) {
     const ProductRaster *product = find_product(source.rasters, rule.name),
                         *peak = find_product(source.rasters, "peak_depth");
@@ -101,11 +101,12 @@ std::optional<PageDrape> drape_of(const FigureSource& source, const DrapeRule& r
     bool any = false;
     for (std::size_t n = 0; n < drape.raster.values.size(); ++n) {
         double& value = drape.raster.values[n];
-        value = extent.values[n] > source.footprint_depth ? value * rule.factor : Raster::nodata;
+        const bool shown = extent.values[n] > source.footprint_depth || (bed && value != 0.0);
+        value = shown ? value * rule.factor : Raster::nodata;
         any |= std::isfinite(value) && (!bed || value != 0.0);
     }
     if (!any) return {};
-    const ColourRange range = colour_range(drape.raster.values, kAll, rule.colours, {},
+    const ColourRange range = colour_range(drape.raster.values, bed ? 0.0 : kAll, rule.colours, {},
                                            drape.name == "peak_depth" ? Top::flow : Top::percentile);
     drape.low = range.low, drape.high = range.high;
     drape.above = range.more_above, drape.below = range.more_below;
