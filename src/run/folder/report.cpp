@@ -281,16 +281,21 @@ std::string barriers_of_structure(const RunRecord& r) {
                of.pushed[0], of.pushed[1]);
 }
 
-std::string barrier_row(const BarrierSummary& b) {
-    const bool reached = std::isfinite(b.run_up);
-    const std::string run_up = reached ? fmt::format("{:.5g} m", b.run_up) : "-";
-    if (b.first_contact < 0.0)
-        return fmt::format("| {} | {} | - | {} | {:.5g} m3 |\n", b.name, b.blur <= 0.0 && reached ? "-" : "none",
-                           run_up, b.overtopped);
-    if (b.blur <= 0.0)
-        return fmt::format("| {} | {:.4g} s | - | {} | {:.5g} m3 |\n", b.name, b.first_contact, run_up, b.overtopped);
-    return fmt::format("| {} | {:.4g} s | {:.4g}, {:.4g}, {:.4g} N s | {} | {:.5g} m3 |\n", b.name, b.first_contact,
-                       b.impulse[0], b.impulse[1], b.impulse[2], run_up, b.overtopped);
+/// `hit`: what the rasters tell of the flow at its faces; of a wall along a line or a mesh nothing.
+std::string barrier_row(const BarrierSummary& b, const BarrierHit& hit) {
+    const bool reached = std::isfinite(b.run_up), forces = b.blur > 0.0;
+    const auto or_dash = [](double value, const char* unit) {
+        return std::isfinite(value) ? fmt::format("{:.4g} {}", value, unit) : std::string("-");
+    };
+    const std::string contact = b.first_contact >= 0.0 ? fmt::format("{:.4g} s", b.first_contact)
+                                : !forces && reached   ? "-"
+                                                       : "none";
+    const std::string impulse = b.first_contact >= 0.0 && forces ? fmt::format("{:.4g}, {:.4g}, {:.4g} N s",
+                                                                               b.impulse[0], b.impulse[1], b.impulse[2])
+                                                                 : "-";
+    return fmt::format("| {} | {} | {} | {} | {} | {} | {:.5g} m3 |\n", b.name, contact, or_dash(hit.depth, "m"),
+                       or_dash(1e-3 * hit.pressure, "kPa"), impulse, reached ? fmt::format("{:.5g} m", b.run_up) : "-",
+                       b.overtopped);
 }
 
 /// Without what is round-off beside the largest entry.
@@ -322,13 +327,15 @@ std::string barriers(const RunRecord& r) {
     if (r.barriers.empty()) return "";
     if (r.extras.breakage) return barriers_of_structure(r);
     std::string text =
-        "## Barriers\n\n| Barrier | First contact | Impulse x, y, z | Run-up to elevation | Over it |\n"
-        "|---|---|---|---|---|\n";
+        "## Barriers\n\n| Barrier | First contact | Deepest flow at it | Dynamic pressure | Impulse x, y, z | Run-up "
+        "to "
+        "elevation | Over it |\n|---|---|---|---|---|---|---|\n";
     double blur = 0.0, hardest = 0.0;
     for (const BarrierSummary& b : r.barriers)
         blur = std::max(blur, b.blur), hardest = std::max(hardest, b.raw_peak_force);
     const std::vector<std::size_t> shown = shown_barriers(r);
-    for (const std::size_t n : shown) text += barrier_row(r.barriers[n]);
+    for (const std::size_t n : shown)
+        text += barrier_row(r.barriers[n], n < r.barrier_hits.size() ? r.barrier_hits[n] : BarrierHit());
     if (shown.size() < r.barriers.size()) {
         std::size_t hit = 0;
         for (std::size_t n = 0; n < r.barriers.size(); ++n)
