@@ -231,6 +231,19 @@ std::optional<Vec2> start_of_run(const fs::path& run_dir) {
     return Vec2(start[0].get<double>(), start[1].get<double>());
 }
 
+std::vector<LateEntry> late_of_run(const fs::path& run_dir) {
+    const auto json = nlohmann::json::parse(text_of(run_dir / "run.json"), nullptr, false);
+    std::vector<LateEntry> late;
+    if (!json.is_object()) return late;  // said elsewhere
+    for (const auto& entry : json.value("late_releases", nlohmann::json::array())) {
+        LateEntry one;
+        one.name = entry.value("name", std::string());
+        if (entry.contains("entered") && entry["entered"].is_number()) one.entered = entry["entered"].get<double>();
+        late.push_back(one);
+    }
+    return late;
+}
+
 FigureSource read_finished_run(const fs::path& run_dir, std::vector<std::string>& warnings) {
     FigureSource source;
     source.run_dir = run_dir;

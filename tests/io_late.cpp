@@ -2,9 +2,11 @@
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
+#include "io/gdal_writer.h"
 #include "observe/table.h"
 #include "plane_case.h"
 #include "read_layer.h"
+#include "read_raster.h"
 
 using namespace frana;
 namespace fs = std::filesystem;
@@ -104,6 +106,39 @@ TEST_CASE("A GIS gets the outlines of all releases, with what entered and when",
     CHECK(outlines[0]->GetFieldAsDouble("entered_s") == 0.0);
     CHECK(outlines[1]->GetFieldAsDouble("entered_s") == json["late_releases"][0]["entered"].get<double>());
     CHECK(outlines[2]->GetFieldAsDouble("entered_s") == 3.3);
+}
+
+TEST_CASE("Ground under releases is left out of a comparison with two surveys, under later ones too",
+          "[program][late][compare]") {
+    const Releases plane;
+    write_text(plane.file(), text_of(plane.file()) + "[deposition]\nlaw = \"rest\"\n");
+    write_text(plane.folder() / "footprint.geojson", rectangle_text(20, 30, 140, 70));
+    write_geotiff(plane.folder() / "dod.tif", Raster::filled({30, 20, 2.5, 2.5, 5.0}, -0.5), "m", "after less before");
+    const fs::path dir = plane.folder() / "out";
+    REQUIRE(plane
+                .frana("run CASE --quiet --set 'output.formats=[\"geotiff\"]' --set survey.footprint=footprint.geojson "
+                       "--set survey.bed_change=dod.tif --out " +
+                       dir.string())
+                .code == 0);
+    const Raster arrival = raster_in(dir / "rasters" / "arrival_time.tif");
+    double released = 0.0;  // below.geojson and timed.geojson entered
+    for (Index j = 0; j < 20; ++j)
+        for (Index i = 0; i < 30; ++i) {
+            const double x = arrival.geometry.x(i), y = arrival.geometry.y(j);
+            const bool later = (x > 70 && x < 90 && y > 30 && y < 70) || (x > 100 && x < 120 && y > 40 && y < 60);
+            released += later || arrival.at(i, j) == 0.0 ? 25.0 : 0.0;
+        }
+    const auto in_release = [&] {
+        return Json::parse(text_of(dir / "compare.json"))["bed_change"]["surveyed_in_release"]["eroded"].get<double>();
+    };
+    CHECK(in_release() == Approx(0.5 * released).epsilon(1e-12));
+    const std::string again = "compare " + dir.string() + " --survey footprint.geojson --bed-change dod.tif";
+    REQUIRE(plane.frana(again).code == 0);
+    CHECK(in_release() == Approx(0.5 * released).epsilon(1e-12));
+    fs::remove(plane.folder() / "timed.geojson");
+    const Outcome gone = plane.frana(again);
+    CHECK(gone.code == 0);
+    CHECK_THAT(gone.err, Contains("ground under later releases is compared as well: "));
 }
 
 TEST_CASE("A run that is stopped between its late releases goes on with the same bits", "[program][late]") {

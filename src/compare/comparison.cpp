@@ -91,13 +91,14 @@ private:
 
     void compare_beds() {
         if (!survey_.bed_change || !run_.bed_change) return;
-        const Raster change = surface_change(*run_.bed_change, run_.final_depth, run_.arrival_time);
+        const Raster change =
+            surface_change(*run_.bed_change, run_.final_depth, run_.arrival_time, run_.released_later);
         const double noise = survey_.bed_change_noise;
         result_.bed_change = bed_change_errors(change, *survey_.bed_change, noise);
         result_.bed_change_steps = bed_change_along(result_.path, change, *survey_.bed_change, noise);
         const BedChangeErrors& errors = *result_.bed_change;
         if (!(errors.surveyed.all() > 0.0))
-            remark("{} changes nowhere by more than {:.3g} m outside of the release, so its errors are no numbers",
+            remark("{} changes nowhere by more than {:.3g} m outside of the releases, so its errors are no numbers",
                    result_.bed_change_source, noise);
         if (errors.unsurveyed.all() > 0.0)
             remark(

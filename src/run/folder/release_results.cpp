@@ -30,6 +30,18 @@ double area_of_part(const Polygon& polygon) {
     return area_of(rings_of(one));
 }
 
+/// Whether a ray to the east crosses the rings an odd number of times.
+bool holds(const Polygon& polygon, const Vec2& point) {
+    bool inside = false;
+    for (const auto& ring : polygon.rings)
+        for (std::size_t k = 0, last = ring.size() - 1; k < ring.size(); last = k++) {
+            const Vec2 &a = ring[last], &b = ring[k];
+            if ((a.y() > point.y()) == (b.y() > point.y())) continue;
+            inside ^= point.x() < a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+        }
+    return inside;
+}
+
 }  // namespace
 
 std::vector<ReleaseSource> release_sources(const CaseFile& file) {
@@ -44,6 +56,23 @@ std::vector<ReleaseSource> release_sources(const CaseFile& file) {
         sources.push_back(std::move(source));
     }
     return sources;
+}
+
+std::optional<Raster> released_later_on(const std::vector<ReleaseSource>& sources, const std::vector<LateEntry>& late,
+                                        const Raster& like) {
+    std::optional<Raster> marks;
+    const GridGeometry& grid = like.geometry;
+    for (const ReleaseSource& source : sources) {
+        const LateEntry* const entry = source.late && !source.outline.empty() ? entry_of(source, late) : nullptr;
+        if (!entry || !entry->entered) continue;
+        if (!marks) marks = Raster::filled(grid, 0.0);
+        std::vector<std::string> said_by_the_scene;
+        for (const Polygon& part : GdalReader().read_polygons(source.outline, like.crs_wkt, said_by_the_scene).parts)
+            for (Index j = 0; j < grid.ny; ++j)
+                for (Index i = 0; i < grid.nx; ++i)
+                    if (holds(part, {grid.x(i), grid.y(j)})) marks->at(i, j) = 1.0;
+    }
+    return marks;
 }
 
 ShapeLayer release_layer(const std::vector<ReleaseSource>& sources, const std::vector<LateEntry>& late, double at_start,

@@ -1,6 +1,7 @@
 #pragma once
 // The releases of a run as polygons for a GIS.
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,5 +27,10 @@ std::vector<ReleaseSource> release_sources(const CaseFile& file);
 /// release at the start (`at_start` [m3]). UserError when a file cannot be read.
 ShapeLayer release_layer(const std::vector<ReleaseSource>& sources, const std::vector<LateEntry>& late, double at_start,
                          const std::string& crs_wkt);
+
+/// 1 on the pixels of `like` whose middle lies in the outline of a release that entered after the start, else 0; nothing where
+/// none did. Those without an outline are not known. UserError when a file cannot be read.
+std::optional<Raster> released_later_on(const std::vector<ReleaseSource>& sources, const std::vector<LateEntry>& late,
+                                        const Raster& like);
 
 }  // namespace frana

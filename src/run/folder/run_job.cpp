@@ -106,7 +106,9 @@ void compare_with_survey(const Scene& scene, const Raster& bed, const fs::path& 
         others.footprint.clear();  // was read with the scene
         Survey survey = read_survey_files(others, peak, record.warnings);
         survey.footprint = *scene.survey;
-        Comparison comparison = compare_rasters(rasters, &bed, scene.output.footprint_depth, survey, record.start);
+        const std::optional<Raster> later = released_later_on(record.release_sources, record.extras.late, peak);
+        Comparison comparison = compare_rasters(rasters, &bed, scene.output.footprint_depth, survey, record.start,
+                                                later ? &*later : nullptr);
         write_scores(run_dir, run_dir / "compare.json", comparison);
         if (scene.output.vtk)
             write_survey(run_dir, bed, *ever_covered(rasters), comparison.limit, rings_of(survey.footprint));
