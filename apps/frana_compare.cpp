@@ -11,6 +11,7 @@
 #include "frana_compare.h"
 #include "frana_figures.h"
 #include "run/folder/comparison.h"
+#include "run/folder/release_results.h"
 #include "run/folder/run_charts.h"
 #include "run/folder/run_folder.h"
 #include "run/folder/states.h"
@@ -44,6 +45,21 @@ void require_erodible(const CompareOptions& options, const std::vector<ProductRa
         (options.run_dir / "rasters" / "bed_change.tif").string()));
 }
 
+/// Where releases entered after the start, for changes of the bed. An outline that has gone is a warning.
+std::optional<Raster> released_later(const CompareOptions& options, const FigureSource& source,
+                                     std::vector<std::string>& warnings) {
+    if (options.bed_change.empty()) return {};
+    try {
+        const std::vector<LateEntry> late = late_of_run(options.run_dir);
+        if (late.empty()) return {};
+        return released_later_on(release_sources(case_of_run(options.run_dir)), late,
+                                 find_product(source.rasters, "peak_depth")->raster);
+    } catch (const UserError& error) {
+        warnings.push_back(fmt::format("ground under later releases is compared as well: {}", error.what()));
+        return {};
+    }
+}
+
 /// Scores must not take the place of what they are made of.
 void require_other_json(const CompareOptions& options) {
     std::vector<fs::path> inputs = {options.survey, options.deposit, options.path, options.bed_change};
@@ -72,8 +88,9 @@ RunAndSurvey read_run_and_survey(const CompareOptions& options) {
     const Survey survey =
         read_survey_files({options.survey, options.deposit, options.path, options.bed_change, options.bed_change_noise},
                           find_product(source.rasters, "peak_depth")->raster, read.warnings);
+    const std::optional<Raster> later = released_later(options, source, read.warnings);
     read.comparison = compare_rasters(source.rasters, source.bed.values.empty() ? nullptr : &source.bed,
-                                      source.footprint_depth, survey, source.start);
+                                      source.footprint_depth, survey, source.start, later ? &*later : nullptr);
     source.survey = survey.footprint;
     source.runout_path = read.comparison.path;
     return read;
@@ -96,7 +113,7 @@ int compare_command(const CompareOptions& options) {
     write_text(options.run_dir / "compare.md", page(source, comparison, figures));
 
     if (bed_known && fs::exists(options.run_dir / "grid.pvd")) {
-        write_survey(options.run_dir, source.bed, find_product(source.rasters, "peak_depth")->raster, comparison.limit,
+        write_survey(options.run_dir, source.bed, *ever_covered(source.rasters), comparison.limit,
                      rings_of(*source.survey));
         write_states(options.run_dir, source.title);
     }

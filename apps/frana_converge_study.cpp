@@ -33,6 +33,11 @@ struct RunFiles {
                             (folder / "rasters" / name).string() + ".tif"));
         return product->raster;
     }
+    /// The largest depth that is known of each place.
+    Raster covered() const {
+        raster("peak_depth");  // says what is missing
+        return *ever_covered(rasters);
+    }
     /// What lies there at the end, as flow or as bed.
     Raster deposit() const {
         const ProductRaster* bed = find_product(rasters, "deposited_depth");
@@ -86,19 +91,20 @@ CellFigures figures_of(const RunFiles& run, const RunFiles& finest, const Path& 
     const Raster &peak = run.raster("peak_depth"), &speed = run.raster("peak_speed");
     const Raster deposit = run.deposit();
     constexpr double nearly_all = 0.999;  // the maximum is that of a single node
-    const Rings outline = pixel_outline(peak, limit);
+    const Raster covered = run.covered();
+    const Rings outline = pixel_outline(covered, limit);
     CellFigures figures;
     figures.cell = peak.geometry.cell;
     figures.reach = path.start ? farthest_from(*path.start, outline) : Raster::nodata;
     figures.runout = path.line.empty() ? figures.reach : reach_along(path.line, outline, figures.cell);
-    figures.footprint_area = area_deeper(peak, limit);
+    figures.footprint_area = area_deeper(covered, limit);
     figures.deposit_area = area_deeper(deposit, limit);
     figures.deposit_volume = volume_of(deposit);
     figures.peak_depth = covered_quantile(peak, peak, limit, nearly_all);
     figures.largest_depth = covered_quantile(peak, peak, limit, 1.0);
     figures.peak_speed = covered_quantile(speed, peak, limit, nearly_all);
     figures.largest_speed = covered_quantile(speed, peak, limit, 1.0);
-    figures.iou = footprints_iou(peak, finest.raster("peak_depth"), limit);
+    figures.iou = footprints_iou(covered, finest.covered(), limit);
     figures.elsewhere = share_elsewhere(deposit, finest.deposit());
     const auto& across = run.record["flow_width_cells"];
     figures.cells_across = across.is_number() ? across.get<double>() : Raster::nodata;

@@ -21,6 +21,7 @@
 #include "run/folder/run_state.h"
 #include "run/web/web_page.h"
 #include "scene/barriers_of_case.h"
+#include "scene/lines_of_case.h"
 #include "terrain/part_of.h"
 #include "vtk_io/reader.h"
 
@@ -62,6 +63,19 @@ void read_record(const fs::path& run_dir, FigureSource& source) {
     }
 }
 
+/// Its line may be a file. Where that has gone maps lack the line, and charts still have the section's name.
+void read_section(const CaseFile& run_case, Index i, FigureSource& source, std::vector<std::string>& warnings) {
+    const std::string table = fmt::format("section.{}.", i);
+    Section section{run_case.word(table + "name"), {}, true};
+    try {
+        std::vector<std::string> said_by_the_run;
+        section.line = read_line(run_case, table + "line", GdalReader(), source.bed.crs_wkt, said_by_the_run);
+    } catch (const UserError& error) {
+        warnings.push_back(fmt::format("section {} is not on the maps: {}", section.name, error.what()));
+    }
+    source.sections.push_back(std::move(section));
+}
+
 /// Lines, points and the survey, from the case in full. Files that it names may have gone; a survey that has
 /// is left out.
 void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::string>& warnings) {
@@ -75,10 +89,7 @@ void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::s
         const std::vector<double>& point = run_case.numbers(table + "point");
         source.gauges.push_back({run_case.word(table + "name"), Vec2(point[0], point[1])});
     }
-    for (Index i = 0; i < run_case.count("section"); ++i) {
-        const std::string table = fmt::format("section.{}.", i);
-        source.sections.push_back({run_case.word(table + "name"), run_case.points(table + "line"), true});
-    }
+    for (Index i = 0; i < run_case.count("section"); ++i) read_section(run_case, i, source, warnings);
     for (Index i = 0; i < run_case.count("stage"); ++i)
         source.in_3d |= run_case.word(fmt::format("stage.{}.model", i)) == "solid_flow";
     if (!run_case.has("survey.footprint") || source.bed.values.empty()) return;
@@ -218,6 +229,19 @@ std::optional<Vec2> start_of_run(const fs::path& run_dir) {
     const auto start = json.value("/results/start"_json_pointer, nlohmann::json());
     if (!start.is_array() || start.size() != 2 || !start[0].is_number() || !start[1].is_number()) return std::nullopt;
     return Vec2(start[0].get<double>(), start[1].get<double>());
+}
+
+std::vector<LateEntry> late_of_run(const fs::path& run_dir) {
+    const auto json = nlohmann::json::parse(text_of(run_dir / "run.json"), nullptr, false);
+    std::vector<LateEntry> late;
+    if (!json.is_object()) return late;  // said elsewhere
+    for (const auto& entry : json.value("late_releases", nlohmann::json::array())) {
+        LateEntry one;
+        one.name = entry.value("name", std::string());
+        if (entry.contains("entered") && entry["entered"].is_number()) one.entered = entry["entered"].get<double>();
+        late.push_back(one);
+    }
+    return late;
 }
 
 FigureSource read_finished_run(const fs::path& run_dir, std::vector<std::string>& warnings) {

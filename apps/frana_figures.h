@@ -20,6 +20,8 @@ CaseFile case_of_run(const std::filesystem::path& run_dir);
 /// `warnings` says so. Profiles, gauges and the survey are left out. UserError when the folder holds no finished run.
 /// Where what came in by inflows or later began to flow, in a run without material at the start: from its run.json.
 std::optional<Vec2> start_of_run(const std::filesystem::path& run_dir);
+/// What became of its releases that were to enter later: names, and times of those that did. UserError without run.json.
+std::vector<LateEntry> late_of_run(const std::filesystem::path& run_dir);
 
 FigureSource read_finished_run(const std::filesystem::path& run_dir, std::vector<std::string>& warnings);
 

@@ -147,6 +147,24 @@ TEST_CASE("Maps of a run show its barriers, drawn at once or later", "[barriers]
     CHECK(figures::count(read_png(pictures / "map_peak_depth.png"), colours::barrier, 3) == 0);
 }
 
+TEST_CASE("The report has depth and pressure at houses, and a house that was never hit has no picture",
+          "[barriers][results]") {
+    const Village village;
+    const Outcome run =
+        call_frana(village.path(), "run case.toml --out run --quiet --set 'output.formats=[\"geotiff\",\"png\"]'");
+    INFO(run.err);
+    REQUIRE(run.code == 0);
+    const fs::path dir = village.path() / "run";
+    for (const auto& [name, hit] :
+         {std::pair("house_1", true), std::pair("house_2", false), std::pair("house_3", true)})
+        CHECK(fs::exists(dir / "figures" / fmt::format("barrier_{}.png", name)) == hit);
+    const Layer layer(dir / "results.gpkg", "barriers");
+    const OGRFeatureUniquePtr house(layer.get().GetNextFeature());
+    const std::string row = fmt::format("| {:.4g} m | {:.4g} kPa | - |", house->GetFieldAsDouble("peak_depth_m"),
+                                        1e-3 * house->GetFieldAsDouble("peak_dynamic_pressure_Pa"));
+    CHECK_THAT(text_of(dir / "report.md"), Contains("Deepest flow at it | Dynamic pressure") && Contains(row));
+}
+
 TEST_CASE("A row of houses mirrored about the flow's axis is met alike, side by side", "[barriers][results]") {
     const Village village;  // the release lies about y = 50, and so does the terrain
     write_text(village.path() / "houses.geojson",

@@ -1,10 +1,13 @@
 // A bed that gains and loses, by the program: rasters, record, report, resume.
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "catch.h"
 #include "plane_case.h"
+#include "read_layer.h"
 #include "read_raster.h"
 
 using namespace frana;
@@ -15,6 +18,10 @@ using Json = nlohmann::json;
 namespace {
 
 constexpr double kPixel = 25.0, kDensity = 1600.0, kReleased = 1.5 * 30.0 * 40.0;  // [m2], [kg/m3], [m3]
+
+/// Ground that it takes up, and a second slide over what the first has left.
+constexpr const char *kLoose = "[erodible]\ndepth = 0.4\nlaw = \"growth\"\ngrowth = 0.02\n",
+                     *kSecondSlide = "[[release]]\noutline = \"release.geojson\"\ndepth = 1.5\nat = 8\n";
 
 /// A slide that stops on the plane; `more` says what the bed is made of.
 struct Slide : PlaneCase {
@@ -78,9 +85,52 @@ TEST_CASE("What a slide leaves on rock is in the rasters, the record and the rep
     CHECK_THAT(text_of(dir / "report.md"), Contains("| became bed |"));
 }
 
+TEST_CASE("What lies there at the end, as flow or as bed, is one raster, and each number of a depth says which it is",
+          "[program][deposition]") {
+    const Slide slide;
+    const fs::path dir = slide.run("run", "--set 'output.formats=[\"vtk\",\"geotiff\",\"png\"]'");
+    const Raster lying = raster_of(dir, "lying_depth.tif"), flow = raster_of(dir, "final_depth.tif"),
+                 left = raster_of(dir, "deposited_depth.tif");
+    double apart = 0.0;
+    for (std::size_t k = 0; k < lying.values.size(); ++k)
+        apart = std::max(apart, std::abs(lying.values[k] - flow.values[k] - left.values[k]));
+    CHECK(apart < 1e-6);  // single precision of depths of about a metre
+    CHECK(volume(lying) == Approx(kReleased).epsilon(1e-6));
+    const auto deepest = [](const Raster& depth) {
+        return *std::max_element(depth.values.begin(), depth.values.end());
+    };
+    const Json results = Json::parse(text_of(dir / "run.json"))["results"];
+    CHECK(results["final_max_depth"].get<double>() == Approx(deepest(lying)).epsilon(1e-6));
+    CHECK(results["final_max_flow_depth"].get<double>() == Approx(deepest(flow)).epsilon(1e-6));
+    CHECK(deepest(flow) < deepest(lying));
+    const std::string report = text_of(dir / "report.md");
+    CHECK_THAT(report, Contains("| deepest at the end, with what has become bed |") &&
+                           Contains("| deepest flow at the end |") && Contains("figures/map_lying_depth.png"));
+    CHECK_THAT(report, !Contains("map_final_depth.png"));
+    CHECK_FALSE(fs::exists(Slide("[erodible]\nlaw = \"none\"\n").run("rock", "--set deposition.law=none") / "rasters" /
+                           "lying_depth.tif"));
+}
+
+TEST_CASE("Ground that thin layers bury was covered", "[program][deposition]") {
+    const Slide slide(std::string(kSecondSlide) + kLoose);
+    const fs::path dir = slide.run("run");
+    const Raster lying = raster_of(dir, "lying_depth.tif"), peak = raster_of(dir, "peak_depth.tif");
+    double covered = 0.0, buried = 0.0;
+    for (std::size_t k = 0; k < lying.values.size(); ++k) {
+        buried += lying.values[k] > 0.1 && !(peak.values[k] > 0.1) ? kPixel : 0.0;
+        covered += lying.values[k] > 0.1 || peak.values[k] > 0.1 ? kPixel : 0.0;
+    }
+    REQUIRE(buried > 0.0);
+    CHECK(Json::parse(text_of(dir / "run.json"))["results"]["footprint_area"].get<double>() == covered);
+    const Layer footprint(dir / "results.gpkg", "footprint");
+    double outlined = 0.0;
+    for (const OGRFeatureUniquePtr& part : footprint.get()) outlined += part->GetGeometryRef()->toPolygon()->get_Area();
+    CHECK(outlined == Approx(covered).epsilon(1e-9));
+}
+
 TEST_CASE("A bed that is taken up and left again closes its budget in the record and in the rasters",
           "[program][deposition]") {
-    const Slide slide("[erodible]\ndepth = 0.4\nlaw = \"growth\"\ngrowth = 0.02\n");
+    const Slide slide(std::string(kSecondSlide) + kLoose);
     const fs::path dir = slide.run("run");
     check_ground(slide, dir);
     const Json bed = bed_of(dir);
@@ -88,10 +138,20 @@ TEST_CASE("A bed that is taken up and left again closes its budget in the record
     REQUIRE((mass("eroded") > 0.0 && mass("deposited") > 0.0));
     CHECK(mass("final") == Approx(mass("initial") - mass("eroded") + mass("deposited")).epsilon(1e-13));
     CHECK(std::abs(mass("relative_error")) < 1e-13);
-    // What was left may have been taken again: the rasters have what lies there at the end.
+    // What was left may have been taken again: the rasters, of single precision, have what lies there at the end.
+    const double lies = kDensity * volume(raster_of(dir, "deposited_depth.tif"));
+    REQUIRE(mass("deposited") > 1.01 * lies);
+    CHECK(mass("lies_behind") == Approx(lies).epsilon(1e-5));
+    CHECK(mass("taken_of_bed") == Approx(kDensity * volume(raster_of(dir, "eroded_depth.tif"))).epsilon(1e-5));
+    CHECK(mass("taken_again") == Approx(mass("eroded") - mass("taken_of_bed")).epsilon(1e-12));
+    CHECK(mass("final") == Approx(mass("initial") - mass("taken_of_bed") + mass("lies_behind")).epsilon(1e-12));
+    CHECK_THAT(text_of(dir / "report.md"),
+               Contains(fmt::format("the flow took {:.6g} m3 of it", mass("taken_of_bed") / kDensity)) &&
+                   Contains(fmt::format("of which it took {:.6g} m3 again and {:.6g} m3 lie there at the end",
+                                        mass("taken_again") / kDensity, mass("lies_behind") / kDensity)));
     const double changed = volume(raster_of(dir, "bed_change.tif"));
     CHECK(kDensity * changed == Approx(mass("deposited") - mass("eroded")).epsilon(1e-5));
-    CHECK(changed + volume(raster_of(dir, "final_depth.tif")) == Approx(kReleased).epsilon(1e-6));
+    CHECK(changed + volume(raster_of(dir, "final_depth.tif")) == Approx(2.0 * kReleased).epsilon(1e-6));
     CHECK_THAT(text_of(dir / "report.md"), Contains("| erodible bed |"));
 }
 
@@ -123,4 +183,13 @@ TEST_CASE("On rough ground the bed at the end is the terrain and its change, and
     const fs::path stays = slide.run("stays", "--set erodible.bed_evolves=false --set deposition.law=none");
     REQUIRE(volume(raster_of(stays, "eroded_depth.tif")) > 0.0);
     CHECK(raster_of(stays, "final_elevation.tif").values == raster_of(stays, "elevation.tif").values);
+    const auto described = [](const fs::path& run_dir) {
+        GDALAllRegister();
+        const fs::path file = run_dir / "rasters" / "final_elevation.tif";
+        const GDALDatasetUniquePtr raster(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER));
+        REQUIRE(raster);
+        return std::string(raster->GetRasterBand(1)->GetDescription());
+    };
+    CHECK_THAT(described(stays), Contains("that of the start, since erodible.bed_evolves is false"));
+    CHECK_THAT(described(slide.folder() / "follows"), !Contains("that of the start"));
 }

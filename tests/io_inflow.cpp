@@ -160,6 +160,49 @@ TEST_CASE("A flood through the line of a vector file is that through its points"
     CHECK(plane.frana("check " + (fs::path(file) / "resolved.toml").string()).code == 0);
 }
 
+TEST_CASE("Pictures of a run whose section is a file are drawn again, without its line where the file has gone",
+          "[program][inflow][figures]") {
+    const Flood plane;
+    write_text(plane.folder() / "bridge.geojson",
+               R"({"type": "Feature", "properties": {}, "geometry": {"type": "LineString", "coordinates":
+               [[55, 5], [55, 95]]}})");
+    const std::string dir = (plane.folder() / "out").string();
+    const std::string run =
+        "run CASE --quiet --set section.0.line=bridge.geojson --set 'output.formats=[\"geotiff\"]' ";
+    REQUIRE(plane.frana(run + "--until 4 --out " + dir).code == 0);
+    const Outcome again = plane.frana("figures " + dir);
+    INFO(again.err);
+    CHECK(again.code == 0);
+    CHECK_THAT(again.out, Contains("map_peak_depth.png") && Contains("sections_discharge.png"));
+    CHECK(again.err.empty());
+    fs::remove(plane.folder() / "bridge.geojson");
+    const Outcome gone = plane.frana("figures " + dir);
+    CHECK(gone.code == 0);
+    CHECK_THAT(gone.out, Contains("map_peak_depth.png") && Contains("sections_discharge.png"));
+    CHECK_THAT(gone.err, Contains("section bridge is not on the maps: ") && Contains("bridge.geojson"));
+}
+
+TEST_CASE("What a run over an area leaves as its case in full is a case", "[program][inflow][resolved]") {
+    const Flood plane;
+    std::string text = kFlood;
+    const std::string line = "line = [[40, 35], [40, 65]]";
+    text.replace(text.find(line), line.size(), "area = [[30, 35], [50, 35], [50, 65], [30, 65]]");
+    text +=
+        "[[release]]\noutline = \"release.geojson\"\ndepth = 1.0\nat = 3.0\n"
+        "[[release]]\noutline = \"release.geojson\"\ndepth = 0.5\nwhen_hit = true\n"
+        "[deposition]\nlaw = \"rest\"\n[forest]\ndetrainment = 20\n"
+        "[[barrier]]\nname = \"house\"\noutline = \"release.geojson\"\nheight = 2.0\n";
+    write_text(plane.file(), text);
+    const std::string dir = (plane.folder() / "out").string();
+    const Outcome run = plane.frana("run CASE --quiet --set output.formats=[] --until 1 --out " + dir);
+    INFO(run.err);
+    REQUIRE(run.code == 0);
+    const Outcome check = plane.frana("check " + dir + "/resolved.toml");
+    INFO(check.err);
+    CHECK(check.code == 0);
+    CHECK_THAT(text_of(dir + "/resolved.toml"), !Contains("velocity = \"normal\""));
+}
+
 TEST_CASE("A flood that takes up its bed grows from what came in", "[program][inflow][erosion]") {
     const Flood plane;
     const fs::path dir = plane.folder() / "out";

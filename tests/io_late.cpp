@@ -2,8 +2,11 @@
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
+#include "io/gdal_writer.h"
 #include "observe/table.h"
 #include "plane_case.h"
+#include "read_layer.h"
+#include "read_raster.h"
 
 using namespace frana;
 namespace fs = std::filesystem;
@@ -75,6 +78,67 @@ TEST_CASE("The record, the report and the table tell when late releases entered,
           "37.5 m3 did not: the flow did not reach it",
           "release.3 (never.geojson): its 37.5 m3 did not enter: no flow deeper than 0.1 m"})
         CHECK_THAT(report, Contains(text));
+}
+
+TEST_CASE("A GIS gets the outlines of all releases, with what entered and when", "[program][late][gis]") {
+    const Releases plane;
+    const fs::path dir = plane.folder() / "out";
+    REQUIRE(plane.frana("run CASE --quiet --set 'output.formats=[\"geotiff\"]' --out " + dir.string()).code == 0);
+    const Json json = record_of(dir);
+    CHECK(json["release_volume_later"].get<double>() == Approx(1800.0).epsilon(1e-12));
+    CHECK_THAT(text_of(dir / "report.md"), Contains("| release volume at the start | 1800 m3 |") &&
+                                               Contains("| release volume, with what entered later | 3600 m3 |"));
+    const Layer layer(dir / "results.gpkg", "release");
+    std::vector<OGRFeatureUniquePtr> outlines;
+    for (OGRFeatureUniquePtr& feature : layer.get()) outlines.push_back(std::move(feature));
+    REQUIRE(outlines.size() == 4);
+    const double areas[] = {1200.0, 800.0, 400.0, 25.0}, volumes[] = {1800.0, 1200.0, 600.0, 37.5};
+    for (int n = 0; n < 4; ++n) {
+        OGRFeature& outline = *outlines[static_cast<std::size_t>(n)];
+        CAPTURE(n);
+        CHECK(outline.GetFieldAsInteger("release") == n);
+        CHECK(outline.GetGeometryRef()->toPolygon()->get_Area() == Approx(areas[n]).epsilon(1e-12));
+        CHECK(outline.GetFieldAsDouble("area_m2") == Approx(areas[n]).epsilon(1e-12));
+        CHECK(outline.GetFieldAsDouble("volume_m3") == Approx(volumes[n]).epsilon(1e-12));
+        const int entered = outline.GetFieldIndex("entered_s");
+        CHECK((outline.IsFieldSetAndNotNull(entered) != 0) == (n != 3));
+    }
+    CHECK(outlines[0]->GetFieldAsDouble("entered_s") == 0.0);
+    CHECK(outlines[1]->GetFieldAsDouble("entered_s") == json["late_releases"][0]["entered"].get<double>());
+    CHECK(outlines[2]->GetFieldAsDouble("entered_s") == 3.3);
+}
+
+TEST_CASE("Ground under releases is left out of a comparison with two surveys, under later ones too",
+          "[program][late][compare]") {
+    const Releases plane;
+    write_text(plane.file(), text_of(plane.file()) + "[deposition]\nlaw = \"rest\"\n");
+    write_text(plane.folder() / "footprint.geojson", rectangle_text(20, 30, 140, 70));
+    write_geotiff(plane.folder() / "dod.tif", Raster::filled({30, 20, 2.5, 2.5, 5.0}, -0.5), "m", "after less before");
+    const fs::path dir = plane.folder() / "out";
+    REQUIRE(plane
+                .frana("run CASE --quiet --set 'output.formats=[\"geotiff\"]' --set survey.footprint=footprint.geojson "
+                       "--set survey.bed_change=dod.tif --out " +
+                       dir.string())
+                .code == 0);
+    const Raster arrival = raster_in(dir / "rasters" / "arrival_time.tif");
+    double released = 0.0;  // below.geojson and timed.geojson entered
+    for (Index j = 0; j < 20; ++j)
+        for (Index i = 0; i < 30; ++i) {
+            const double x = arrival.geometry.x(i), y = arrival.geometry.y(j);
+            const bool later = (x > 70 && x < 90 && y > 30 && y < 70) || (x > 100 && x < 120 && y > 40 && y < 60);
+            released += later || arrival.at(i, j) == 0.0 ? 25.0 : 0.0;
+        }
+    const auto in_release = [&] {
+        return Json::parse(text_of(dir / "compare.json"))["bed_change"]["surveyed_in_release"]["eroded"].get<double>();
+    };
+    CHECK(in_release() == Approx(0.5 * released).epsilon(1e-12));
+    const std::string again = "compare " + dir.string() + " --survey footprint.geojson --bed-change dod.tif";
+    REQUIRE(plane.frana(again).code == 0);
+    CHECK(in_release() == Approx(0.5 * released).epsilon(1e-12));
+    fs::remove(plane.folder() / "timed.geojson");
+    const Outcome gone = plane.frana(again);
+    CHECK(gone.code == 0);
+    CHECK_THAT(gone.err, Contains("ground under later releases is compared as well: "));
 }
 
 TEST_CASE("A run that is stopped between its late releases goes on with the same bits", "[program][late]") {

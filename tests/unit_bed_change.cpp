@@ -69,6 +69,9 @@ TEST_CASE("What was not surveyed, lies outside of the run or in the release stan
     CHECK(std::isnan(seen.at(0, 0)));
     CHECK((seen.at(1, 0) == -1.5 && seen.at(2, 0) == 3.0 && seen.at(3, 0) == -1.0));
     CHECK(surface_change(bed, nullptr, nullptr).values == bed.values);
+    const Raster later = of({0.0, 1.0, 0.0, 0.0});
+    const Raster without = surface_change(bed, &lying, &arrival, &later);
+    CHECK((std::isnan(without.at(0, 0)) && std::isnan(without.at(1, 0)) && without.at(2, 0) == 3.0));
     // The survey has a pixel more to the west, where the run has none.
     Raster theirs = made({5, 1, -0.5 * cell, 0.5 * cell, cell}, [](Index, Index) { return -1.0; });
     theirs.at(4, 0) = NAN;

@@ -197,3 +197,19 @@ TEST_CASE("A surveyed deposit may reach beyond the simulated raster; its volume 
     CHECK(errors.surveyed_volume == Approx(630 * 220));
     CHECK(errors.mae == Approx((630.0 * 220 - 600 * 200) / (630 * 220)));
 }
+
+TEST_CASE("What layer after layer buried counts as ever covered: the extent at the end is a part of it",
+          "[compare][deposition]") {
+    const ComparedFlow flow(300);
+    const Raster left =
+        made([](double x, double y) { return within(x, y, 250, 50, 400, 150) ? 0.5 : 0.0; });  // 100 m farther
+    SimulatedRun run = flow.run();
+    run.deposited_depth = &left;
+    Survey survey;
+    survey.footprint.parts = {box(50, 50, 400, 150)};
+    const Comparison found = compare(run, survey);
+    CHECK(found.trace.areas.simulated() == Approx(350.0 * 100.0));
+    CHECK(found.trace.areas.iou() == Approx(1.0));
+    CHECK(found.final->areas.simulated() == Approx(200.0 * 100.0));
+    CHECK(found.trace.runout - found.surveyed_runout == Approx(0.0).margin(1e-9));
+}

@@ -59,4 +59,9 @@ TEST_CASE("What lies at the end is flow and what has become bed", "[deposition][
     CHECK(with_deposit(depth, nullptr).values[0] == 0.5);
     const Raster lying = with_deposit(depth, &bed);
     CHECK((lying.values[0] == 1.5 && lying.values[1] == 0.5 && std::isnan(lying.values[2])));
+    Raster peak = Raster::filled(g, 0.75);
+    const Raster cover = deepest_cover(peak, lying);
+    CHECK((cover.values[0] == 1.5 && cover.values[1] == 0.75 && cover.values[2] == 0.75));
+    peak.values[0] = NAN;
+    CHECK(deepest_cover(peak, lying).values[0] == 1.5);
 }

@@ -93,3 +93,10 @@ TEST_CASE("A forest goes together with loose ground and with deposition", "[fore
                                  "below = 150\nmu = 0.33\nxi = 400\n");
     CHECK((scene.forest && scene.erodible && scene.deposition && scene.friction));
 }
+
+TEST_CASE("A limit of speed below which trees take nothing anyway is refused", "[forest][scene]") {
+    CHECK(has(problem_of(slope_gis(), "detrainment = 50\nmax_speed = 0.1\n"),
+              "forest.max_speed: found 0.1 m/s; expected more than 0.1 m/s, since slower flow loses nothing to trees; "
+              "give a higher speed, or remove it"));
+    CHECK(scene_of(slope_gis(), "detrainment = 50\nmax_speed = 0.2\n").forest);
+}

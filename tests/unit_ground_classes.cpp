@@ -1,4 +1,6 @@
 // Classes of ground for the table of snow's friction, and scenes that take their friction from it.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <variant>
@@ -116,6 +118,32 @@ TEST_CASE("Without a class the released volume tells the size, and zones win ove
     CHECK(mu_of("", "") != mu_of("volume_class = \"small\"\n", ""));
     const auto zoned = mu_of("", "[[material.zone]]\nabove = -1000\nmu = 0.123\n");
     CHECK(static_cast<std::size_t>(std::count(zoned.begin(), zoned.end(), 0.123)) == zoned.size());
+}
+
+TEST_CASE("The size is that of the volume which is released, to the digit", "[scene]") {
+    // Of the outline's 1500 m2 two thirds are 5 m deep, between middles of pixels: 5000 m3 and a litre, less, or more.
+    FakeGis gis = slope_gis();
+    const auto size_with = [&](double more) {
+        gis.rasters["thick.tif"] = sampled({40, 30, 1002.5, 2002.5, 5.0}, [&](double x, double) {
+            return x > 1050 && x < 1080 ? 5.0 + more : x > 1080 && x < 1100 ? 0.1 : 0.0;
+        });
+        std::string text = with_bed("table = \"voellmy-salm\"\n");
+        text.replace(text.find("depth = 2"), 9, "depth = \"thick.tif\"");
+        const Scene scene = scene_of(text, gis);
+        double volume = 0.0;
+        for (const double part : scene.particles.volume) volume += part;
+        const auto said = [&](const char* size) {
+            return std::any_of(scene.log.begin(), scene.log.end(), [&](const std::string& line) {
+                return line.find(fmt::format("size {} (", size)) != std::string::npos;
+            });
+        };
+        REQUIRE(said("tiny") != said("small"));
+        return std::pair(volume, said("small"));
+    };
+    const double at_limit = (5000.0 - 0.1 * 600.0) / 900.0 - 5.0;
+    const auto below = size_with(at_limit - 1e-4), above = size_with(at_limit + 1e-4);
+    CHECK((below.first == Approx(5000.0 - 0.09) && above.first == Approx(5000.0 + 0.09)));
+    CHECK((!below.second && above.second));
 }
 
 TEST_CASE("Rasters of the table's numbers are the table, bit for bit", "[scene]") {

@@ -1,4 +1,6 @@
 // [survey] of a case: what stands besides a footprint, and what is refused before the run.
+#include <algorithm>
+
 #include <cmath>
 
 #include "scene/build_scene.h"
@@ -59,4 +61,20 @@ TEST_CASE("A change of the bed that cannot be compared is refused before the run
     CHECK(has(problem_of(footprint + "deposit = \"gone.tif\"\n"), "gone.tif: no such raster"));
     CHECK(has(problem_of(footprint + "path = \"none.geojson\"\n"), "none.geojson: holds 0 lines; expected one"));
     CHECK(has(problem_of(loose + footprint + "bed_change_noise = -1\n"), "survey.bed_change_noise"));
+}
+
+TEST_CASE("Elevations are no change of the bed; a change of more than 100 m is a remark", "[scene][bed_change]") {
+    FakeGis gis = surveyed_gis();
+    const CaseFile file = case_of(loose + "[survey]\nfootprint = \"footprint.geojson\"\nbed_change = \"dod.tif\"\n");
+    Raster& change = gis.rasters["dod.tif"];
+    change.at(3, 2) = -120.0;
+    std::vector<std::string> log;
+    read_bed_change(gis, "dod.tif", gis.rasters["dem.tif"].geometry, "", log);
+    CHECK(std::any_of(log.begin(), log.end(), [](const std::string& line) {
+        return has(line, "dod.tif: found changes of up to 120 m, on 2.08 % of the pixels more than 100 m");
+    }));
+    for (double& value : change.values) value = 2900.0;
+    CHECK(has(only_problem([&] { build_scene(file, gis); }),
+              "dod.tif: found changes of up to 2900 m, on 100 % of the pixels more than 100 m; expected the elevations "
+              "after the event less those before it, not elevations; subtract them first"));
 }

@@ -27,12 +27,13 @@ Vec2 point_at(const Polyline& path, double distance) {
 
 }  // namespace
 
-Raster surface_change(const Raster& bed_change, const Raster* lying, const Raster* arrival_time) {
+Raster surface_change(const Raster& bed_change, const Raster* lying, const Raster* arrival_time, const Raster* later) {
     Raster change = bed_change;
     for (std::size_t k = 0; k < change.values.size(); ++k) {
         const auto known = [](double value) { return std::isnan(value) ? 0.0 : value; };
         change.values[k] = known(change.values[k]) + (lying ? known(lying->values[k]) : 0.0);
         if (arrival_time && arrival_time->values[k] == 0.0) change.values[k] = Raster::nodata;
+        if (later && later->values[k] > 0.0) change.values[k] = Raster::nodata;
     }
     return change;
 }

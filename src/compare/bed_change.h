@@ -36,9 +36,11 @@ private:
 };
 
 /// What a second survey would see: the change of the bed and, with `lying`, the depth of what lies on it at the end [m].
-/// NaN where the run began (arrival time 0, when that is known): what stood there before was no bed. Places of later
-/// releases are not left out. All rasters are on one grid; no data counts as no change.
-Raster surface_change(const Raster& bed_change, const Raster* lying, const Raster* arrival_time);
+/// NaN where the run began (arrival time 0, when that is known) and where `later`, which may be null, is above 0, a release
+/// that entered after the start: what stood there before was no bed. All rasters are on one grid; no data counts as no
+/// change.
+Raster surface_change(const Raster& bed_change, const Raster* lying, const Raster* arrival_time,
+                      const Raster* later = nullptr);
 
 /// `surveyed` has the pixels of `simulated` (see surface_change), and may have more around them; there nothing was
 /// simulated. NaN in the survey: not surveyed.

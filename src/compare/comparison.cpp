@@ -30,12 +30,12 @@ public:
 
     Comparison all() {
         choose_path();
-        result_.outline = pixel_outline(*run_.peak_depth, run_.limit);
-        result_.trace = scores(*run_.peak_depth, result_.outline);
-        if (run_.final_depth) {
-            lying_ = with_deposit(*run_.final_depth, run_.deposited_depth);
-            result_.final = scores(*lying_, pixel_outline(*lying_, run_.limit));
-        }
+        if (run_.final_depth) lying_ = with_deposit(*run_.final_depth, run_.deposited_depth);
+        const bool buried = lying_ && run_.deposited_depth;
+        const Raster ever = buried ? deepest_cover(*run_.peak_depth, *lying_) : *run_.peak_depth;
+        result_.outline = pixel_outline(ever, run_.limit);
+        result_.trace = scores(ever, result_.outline);
+        if (lying_) result_.final = scores(*lying_, pixel_outline(*lying_, run_.limit));
         if (!result_.path.empty()) {
             result_.surveyed_runout = reach_along(result_.path, rings_, result_.cell);
             result_.surveyed_reach = farthest_from(result_.path.front(), rings_);
@@ -91,13 +91,14 @@ private:
 
     void compare_beds() {
         if (!survey_.bed_change || !run_.bed_change) return;
-        const Raster change = surface_change(*run_.bed_change, run_.final_depth, run_.arrival_time);
+        const Raster change =
+            surface_change(*run_.bed_change, run_.final_depth, run_.arrival_time, run_.released_later);
         const double noise = survey_.bed_change_noise;
         result_.bed_change = bed_change_errors(change, *survey_.bed_change, noise);
         result_.bed_change_steps = bed_change_along(result_.path, change, *survey_.bed_change, noise);
         const BedChangeErrors& errors = *result_.bed_change;
         if (!(errors.surveyed.all() > 0.0))
-            remark("{} changes nowhere by more than {:.3g} m outside of the release, so its errors are no numbers",
+            remark("{} changes nowhere by more than {:.3g} m outside of the releases, so its errors are no numbers",
                    result_.bed_change_source, noise);
         if (errors.unsurveyed.all() > 0.0)
             remark(

@@ -21,6 +21,7 @@ struct SimulatedRun {
     const Raster* bed_change = nullptr;       ///< or null: the bed is rock
     const Raster* deposited_depth = nullptr;  ///< or null: nothing became bed; lies with the final depth
     std::optional<Vec2> start;                ///< of the steepest path where nothing was released at the start
+    const Raster* released_later = nullptr;   ///< or null; above 0 where a release entered after the start
 };
 
 /// What was surveyed.

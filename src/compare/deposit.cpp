@@ -17,6 +17,13 @@ Raster with_deposit(const Raster& final_depth, const Raster* deposited) {
     return lying;
 }
 
+Raster deepest_cover(const Raster& peak_depth, const Raster& lying) {
+    Raster cover = peak_depth;
+    expect(lying.values.size() == cover.values.size(), "rasters of one run have the same pixels");
+    for (std::size_t k = 0; k < cover.values.size(); ++k) cover.values[k] = std::fmax(cover.values[k], lying.values[k]);
+    return cover;
+}
+
 DepositErrors deposit_errors(const Raster& simulated, const Raster& surveyed, double limit) {
     DepositErrors errors;
     double absolute = 0.0, square = 0.0;

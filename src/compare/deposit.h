@@ -8,6 +8,10 @@ namespace frana {
 /// nothing.
 Raster with_deposit(const Raster& final_depth, const Raster* deposited);
 
+/// The largest depth that is known of a place: the flow's peak, or what lies there at the end. Thin layers may have buried
+/// ground which no flow was ever deep on. NaN in one of them counts as nothing.
+Raster deepest_cover(const Raster& peak_depth, const Raster& lying);
+
 struct DepositErrors {
     double simulated_volume = 0.0;   ///< where the survey has data [m3]
     double surveyed_volume = 0.0;    ///< [m3]

@@ -6,8 +6,8 @@
 #include <chrono>
 #include <ostream>
 
-#include "base/compensated_sum.h"
 #include "base/error.h"
+#include "compare/deposit.h"
 #include "compare/overlap.h"
 #include "compare/runout.h"
 #include "observe/budget.h"
@@ -15,7 +15,7 @@
 #include "run/simulation.h"
 #include "scene/build_scene.h"
 #include "scene/flow_start.h"
-#include "terrain/part_of.h"
+#include "scene/taken_of_bed.h"
 
 namespace frana {
 namespace {
@@ -35,10 +35,13 @@ public:
             if (field) std::copy(field->data, field->data + count, values.back().begin());
         }
         if (const Field* taken = last.node("eroded_depth")) eroded.assign(taken->data, taken->data + count);
+        const Field *flow = last.node("depth"), *left = last.node("deposited_depth");
+        for (std::size_t n = 0; flow && left && n < count; ++n) lying.push_back(flow->data[n] + left->data[n]);
     }
     GridGeometry grid;
     std::vector<std::vector<double>> values;  ///< by field; zero where a model does not have it
     std::vector<double> eroded;               ///< of the bed that was there at the start; empty without one [m]
+    std::vector<double> lying;                ///< at the end, with what became bed; empty where none can [m]
 
 private:
     const std::vector<std::string>& fields_;
@@ -68,22 +71,6 @@ void measure_extent(const EnsembleBase& base, const Raster& depth, SampleResult&
     result.runout = base.path.empty() ? result.reach : reach_along(base.path, outline, cell);
 }
 
-/// What the flow took of the bed that was there at the start, not of what it had left behind itself [kg]. Of nodes on walls only
-/// a half lies inside.
-double taken_of_bed(const Scene& scene, const GridGeometry& whole, const LastPeaks& last) {
-    if (!scene.erodible || last.eroded.empty()) return 0.0;
-    const NodeBox at = box_of(last.grid, whole).value_or(NodeBox::all(last.grid));
-    const auto inside = [&](Index k, Index n) {
-        return scene.sides == Sides::wall && (k == 0 || k == n - 1) ? 0.5 : 1.0;
-    };
-    CompensatedSum sum;
-    for (Index j = 0; j < last.grid.ny; ++j)
-        for (Index i = 0; i < last.grid.nx; ++i)
-            sum.add(inside(at.i0 + i, whole.nx) * inside(at.j0 + j, whole.ny) *
-                    last.eroded[static_cast<std::size_t>(j * last.grid.nx + i)]);
-    return sum.value() * last.grid.cell * last.grid.cell * scene.erodible->density;
-}
-
 void measure(const Scene& scene, const EnsembleBase& base, const RunSummary& run, const LastPeaks& peaks,
              SampleResult& result) {
     if (peaks.values.empty()) return;
@@ -94,12 +81,21 @@ void measure(const Scene& scene, const EnsembleBase& base, const RunSummary& run
     result.footprint_area = static_cast<double>(result.peaks.pixels()) * cell * cell;
     result.max_depth = run.extremes.max_depth, result.max_speed = run.extremes.max_speed;
     const Status& last = run.last;
-    const double flowed = run.first.mass + mass_came_in(run.first, last) + taken_of_bed(scene, base.whole, peaks);
+    const double flowed =
+        run.first.mass + mass_came_in(run.first, last) + taken_of_bed(scene, peaks.grid, peaks.eroded);
     result.volume = flowed / scene.density;
     result.left_share = flowed > 0.0 ? last.mass_left / flowed : 0.0;
     result.mass_error = budget(run.first, last).mass_error;
     Raster depth;
     depth.geometry = peaks.grid, depth.values = peaks.values.front();
+    if (!peaks.lying.empty()) {
+        Raster lying = depth;
+        lying.values = peaks.lying;
+        depth = deepest_cover(depth, lying);
+        const auto wet = std::count_if(depth.values.begin(), depth.values.end(),
+                                       [&](double value) { return value > base.footprint_depth; });
+        result.footprint_area = static_cast<double>(wet) * cell * cell;
+    }
     measure_extent(base, depth, result);
 }
 

@@ -153,6 +153,13 @@ void check(const std::vector<Release>& releases, const Raster& bed, const Partic
 
 }  // namespace
 
+double volume_of(const std::vector<Release>& releases, const GridGeometry& grid) {
+    double sum = 0.0;
+    Log said_later;
+    for (const Material& material : materials_of(releases, grid)) sum += measured(material, grid, said_later).volume;
+    return sum;
+}
+
 Seeds make_seeds(const std::vector<Release>& releases, const Raster& bed, const ParticleOptions& options,
                  std::vector<ReleaseReport>& reports, std::vector<std::string>& log) {
     check(releases, bed, options);

@@ -32,6 +32,10 @@ struct ReleaseReport {
     double spacing = 0.0;          ///< lattice spacing, or the root of the mean patch area [m]
 };
 
+/// Volume of all releases between the outer nodes of a grid, exactly as make_seeds() takes it, before there are particles
+/// [m^3]. Throws UserError on a release whose depth is no number, or without any volume.
+double volume_of(const std::vector<Release>& releases, const GridGeometry& grid);
+
 /// Places the particles of all releases on the grid of `bed` (material lives between its outer nodes) and
 /// gives each the volume of its own patch. On the lattice the first point stands half a spacing from node (0,
 /// 0), the spacing is cell / sqrt(per_cell), or is sought so that the number comes near to `count` (a lattice

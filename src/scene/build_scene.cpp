@@ -8,7 +8,7 @@
 #include "base/constants.h"
 #include "base/error.h"
 #include "base/free_memory.h"
-#include "particles/outline_area.h"
+#include "particles/generate.h"
 #include "scene/ground_fields.h"
 #include "scene/memory_need.h"
 #include "scene/problems.h"
@@ -37,7 +37,7 @@ public:
         problems_.throw_if_any();  // nothing below can be judged without terrain
         read_releases();
         read_survey(case_, reader_, scene_, problems_);
-        read_friction(case_, reader_, friction_by_table(case_) ? rough_volume() : 0.0, scene_, problems_);
+        read_friction(case_, reader_, friction_by_table(case_) ? released() : 0.0, scene_, problems_);
         read_profiles_and_gauges();
         scene_.sections = read_sections(case_, reader_, scene_, problems_);
         read_inflows(case_, reader_, scene_, problems_);
@@ -184,42 +184,14 @@ private:
         }
     }
 
-    /// Of all releases, by their areas and mean depths [m3]: before there are particles.
-    double rough_volume() const {
-        const GridGeometry& grid = scene_.bed.geometry;
-        double sum = 0.0;
-        for (const Release& release : releases_) {
-            const NodeMarks marks = nodes_under(release, grid);
-            double depths = 0.0, count = 0.0;
-            for (Index k = 0; k < grid.size(); ++k) {
-                if (!marks[static_cast<std::size_t>(k)]) continue;
-                const double depth = release.depth_field
-                                         ? nearest(*release.depth_field, grid.x(k % grid.nx), grid.y(k / grid.nx))
-                                         : release.depth;
-                if (depth > 0.0) depths += depth;
-                count += 1.0;
-            }
-            const double area = release.outline ? area_of(*release.outline) : count * grid.cell * grid.cell;
-            if (count > 0.0) sum += area * depths / count;
+    /// Of all releases, later ones too: the size of the avalanche that they make [m3]. What is wrong with a release is said
+    /// when it gets its particles.
+    double released() const {
+        try {
+            return volume_of(releases_, scene_.bed.geometry);
+        } catch (const UserError&) {
+            return 0.0;
         }
-        return sum;
-    }
-
-    static double area_of(const Polygons& outline) {
-        double area = 0.0;
-        for (const Polygon& polygon : outline.parts)
-            for (std::size_t r = 0; r < polygon.rings.size(); ++r)
-                area += (r == 0 ? 1.0 : -1.0) * std::abs(ring_area(polygon.rings[r]));
-        return area;
-    }
-
-    /// Of the pixel nearest to a place.
-    static double nearest(const Raster& field, double x, double y) {
-        const GridGeometry& g = field.geometry;
-        const auto pixel = [](double at, Index count) {
-            return static_cast<Index>(std::clamp(std::round(at), 0.0, static_cast<double>(count - 1)));
-        };
-        return field.at(pixel((x - g.x0) / g.cell, g.nx), pixel((y - g.y0) / g.cell, g.ny));
     }
 
     static std::string no_material(const Release& release) {

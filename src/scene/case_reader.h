@@ -50,6 +50,7 @@ private:
     bool friction_table() const;
     void check_surveyed_bed();
     void check_forest();
+    void check_forest_speeds();
     void check_friction_table();
     void check_table_numbers();
     void check_inflow(const std::string& prefix);

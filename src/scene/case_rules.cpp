@@ -7,6 +7,7 @@
 #include "base/layer_name.h"
 #include "law/bed/laws.h"
 #include "law/catalogue.h"
+#include "law/detrainment.h"
 #include "scene/case_reader.h"
 #include "scene/combinations.h"
 #include "scene/salm_table.h"
@@ -93,7 +94,7 @@ void CaseReader::check_tables() {
             if (table == "material.zone") check_zone(prefix);
             if (table == "material.bed") check_friction_table();
             if (table == "survey") check_surveyed_bed();
-            if (table == "forest") check_forest();
+            if (table == "forest") check_forest(), check_forest_speeds();
         }
     }
 }
@@ -261,6 +262,17 @@ void CaseReader::check_forest() {
         if (case_.given(key))
             wrong(key, "found without detrainment", "expected it with forest.detrainment only",
                   "add detrainment = ... [Pa] under [forest], or remove it");
+}
+
+/// Trees take nothing of flow slower than a least speed, so a limit below that leaves them nothing.
+void CaseReader::check_forest_speeds() {
+    const std::string key = "forest.max_speed";
+    if (!case_.given(key) || misread_.count(key)) return;
+    const double least = Detrainment().min_speed;
+    if (case_.number(key) <= least)
+        wrong(key, fmt::format("found {:.6g} m/s", case_.number(key)),
+              fmt::format("expected more than {:.6g} m/s, since slower flow loses nothing to trees", least),
+              "give a higher speed, or remove it");
 }
 
 /// A table of friction goes with Voellmy's law alone, and says all of its numbers.

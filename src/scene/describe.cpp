@@ -39,6 +39,7 @@ std::vector<std::string> conditions(const Parameter& parameter) {
     std::vector<std::string> lines;
     if (!parameter.used_by.empty())
         lines.push_back(fmt::format("only with {} = {}", parameter.switch_key, listed(parameter.used_by)));
+    if (!parameter.only_with.empty()) lines.push_back(fmt::format("only with {}", parameter.only_with));
     if (!parameter.required_by.empty()) {
         const std::string either = parameter.instead_of.empty() ? "" : " (this or " + parameter.instead_of + ")";
         lines.push_back(fmt::format("needed by {}{}", listed(parameter.required_by), either));

@@ -90,6 +90,12 @@ inline Parameter instead(Parameter parameter, const char* other) {
     return parameter;
 }
 
+/// Refused without that key of the same table; the rules of the case say so in words of their own.
+inline Parameter goes_with(Parameter parameter, const char* other) {
+    parameter.only_with = other;
+    return parameter;
+}
+
 /// Another default under the preset "paper", the choices of Fois et al. (2024).
 inline Parameter paper(Parameter parameter, Value value) {
     parameter.otherwise.push_back({"scheme.preset", text("paper"), std::move(value)});

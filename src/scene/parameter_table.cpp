@@ -113,7 +113,7 @@ void add_inflow(Table& table) {
     Parameter towards =
         make("inflow.towards", Kind::numbers, "m", "a point on the side of the line that the flow goes to: [x, y]");
     towards.length = 2;
-    table.push_back(absent(towards, "down the slope"));
+    table.push_back(absent(goes_with(towards, "inflow.line"), "down the slope"));
     table.push_back(
         absent(instead(make("inflow.table", Kind::path, "",
                             "CSV of the discharge over time, linear between its rows: a header with units, such "
@@ -132,7 +132,7 @@ void add_inflow(Table& table) {
              "highest discharge of that triangle from its volume V, m3/s and m3: mizuyama-granular: 0.135 V^0.78, "
              "mizuyama-muddy: 0.0188 V^0.79 (Mizuyama et al. 1992), rickenmann: 0.1 V^0.833 (1999)");
     peak.choices = peak_formulas();
-    table.push_back(absent(peak, "mizuyama-granular"));
+    table.push_back(absent(goes_with(peak, "inflow.volume"), "mizuyama-granular"));
     Parameter velocity =
         make("inflow.velocity", Kind::number_or_choice, "m/s",
              "speed along the bed at the line; normal: that of uniform flow by the bed law, on the slope "
@@ -140,7 +140,7 @@ void add_inflow(Table& table) {
     velocity.range = positive;
     velocity.choices = {"normal", "column"};
     velocity.fallback = text("normal");
-    table.push_back(velocity);
+    table.push_back(goes_with(velocity, "inflow.line"));
 }
 
 /// Laws bring their own keys.
@@ -177,7 +177,7 @@ void add_friction_table(Table& table) {
     Parameter size = make("material.bed.volume_class", Kind::choice, "",
                           "of the avalanche: tiny below 5000 m3, small below 25000, medium below 60000, large");
     size.choices = {"tiny", "small", "medium", "large"};
-    add(absent(size, "that of the released volume; needed with [[inflow]]"));
+    add(absent(size, "that of the volume of all releases, later ones too; needed with [[inflow]]"));
     add(list("material.bed.altitude_limits", "m", {1000.0, 1500.0},
              "elevations from which on snow has the friction of the middle and of the high zone"));
     add(number("material.bed.curvature_length", "m", not_negative, 50.0,

@@ -62,6 +62,7 @@ struct Parameter {
     std::vector<std::string> used_by = {};      ///< choices of switch_key that use this key
     std::vector<std::string> required_by = {};  ///< choices of switch_key that need this key
     std::string instead_of = {};  ///< key that says the same in another way: only one of both may be given
+    std::string only_with = {};   ///< key of the same table without which this one is refused
 
     /// switch_key for the parameter's own `key`: "insitu.2.kind" for "insitu.2.field".
     std::string switch_of(const std::string& key) const;

@@ -52,7 +52,9 @@ private:
         const bool unused = !choice.empty() && (!case_.has(choice) || !contains(parameter.used_by, case_.word(choice)));
         const bool said_otherwise =
             !parameter.instead_of.empty() && case_.given(prefix + find_parameter(parameter.instead_of)->name());
-        if (unused || said_otherwise || refused_if_given(case_, parameter.key)) return;
+        const bool alone =
+            !parameter.only_with.empty() && !case_.given(prefix + find_parameter(parameter.only_with)->name());
+        if (unused || said_otherwise || alone || refused_if_given(case_, parameter.key)) return;
         if (const Value* value = case_.find(key))
             out_ += fmt::format("{} = {}  # default\n", parameter.name(), value_text(parameter, *value));
         else if (!parameter.absent.empty())

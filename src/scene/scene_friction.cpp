@@ -155,7 +155,7 @@ private:
             "terrain "
             "averaged over {:.6g} m, flat below {:.6g} degrees, plan curvatures {:.6g}, {:.6g}, {:.6g} 1/m",
             case_.place("material.bed.table"), salm::size_names[size],
-            case_.given("material.bed.volume_class") ? "" : fmt::format(" (about {:.3g} m3 are released)", released),
+            case_.given("material.bed.volume_class") ? "" : fmt::format(" ({:.6g} m3 are released)", released),
             case_.number("material.bed.return_period"), text, all.length, all.flat_below_deg, all.curvature[0],
             all.curvature[1], all.curvature[2]));
     }

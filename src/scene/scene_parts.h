@@ -7,6 +7,7 @@
 #include "particles/release.h"
 #include "scene/build_scene.h"
 #include "scene/case_file.h"
+#include "scene/lines_of_case.h"
 #include "scene/problems.h"
 #include "scene/scene.h"
 #include "scene/toolbox.h"
@@ -53,11 +54,6 @@ std::vector<Release> read_release(const CaseFile& file, Index i, Scene& scene, c
 /// `problems`.
 void read_barriers(const CaseFile& file, const GisReader& reader, const MeshReader& meshes, Scene& scene,
                    Problems& problems);
-
-/// A key that holds points, or names a vector file of one line, which is brought to `crs_wkt`; points on one another are
-/// dropped. Throws UserError; remarks go to `log`.
-Polyline read_line(const CaseFile& file, const std::string& key, const GisReader& reader, const std::string& crs_wkt,
-                   std::vector<std::string>& log);
 
 /// [survey] of a scene that has its terrain: the footprint is read, other files are tried. What is wrong with them goes to
 /// `problems`.

@@ -22,6 +22,26 @@ bool known_on(const Raster& raster, const GridGeometry& grid) {
     return false;
 }
 
+/// Elevations that were taken for their change are nearly everywhere large, changes hardly anywhere.
+void refuse_elevations(const Raster& change, std::vector<std::string>& log) {
+    constexpr double kLarge = 100.0;  // [m]; few rock avalanches left or took more
+    Index known = 0, large = 0;
+    double most = 0.0;
+    for (const double value : change.values) {
+        if (!std::isfinite(value)) continue;
+        ++known;
+        large += std::abs(value) > kLarge;
+        most = std::fmax(most, std::abs(value));
+    }
+    if (large == 0) return;
+    const std::string found =
+        fmt::format("{}: found changes of up to {:.4g} m, on {:.3g} % of the pixels more than {:g} m", change.source,
+                    most, 100.0 * double(large) / double(known), kLarge);
+    const char* const wanted = "expected the elevations after the event less those before it, not elevations";
+    if (2 * large > known) throw UserError(fmt::format("{}; {}; subtract them first (gdal_calc.py)", found, wanted));
+    log.push_back(fmt::format("{}; {}; check the raster", found, wanted));
+}
+
 }  // namespace
 
 SurveyFiles survey_files(const CaseFile& file) {
@@ -57,6 +77,7 @@ Raster read_bed_change(const GisReader& reader, const std::filesystem::path& fil
                        const std::string& crs_wkt, std::vector<std::string>& log) {
     Raster change = reader.read_deposit(file, grid, crs_wkt, log);
     change.source = file.string();
+    refuse_elevations(change, log);
     if (known_on(change, grid)) return change;
     const auto e = grid.pixel_extent();
     throw UserError(fmt::format(

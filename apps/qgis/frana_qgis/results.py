@@ -11,8 +11,8 @@ from qgis.core import (
 
 # The first is drawn on top. Only the first raster is ticked, and the ground: the others cover the same place.
 _RUN = ("footprint.geojson", "rasters/peak_depth.tif", "rasters/peak_speed.tif", "rasters/peak_dynamic_pressure.tif",
-        "rasters/peak_pressure.tif", "rasters/arrival_time.tif", "rasters/final_depth.tif", "rasters/bed_change.tif",
-        "rasters/elevation.tif")
+        "rasters/peak_pressure.tif", "rasters/arrival_time.tif", "rasters/lying_depth.tif", "rasters/final_depth.tif",
+        "rasters/bed_change.tif", "rasters/elevation.tif")
 _PLACE = "frana/place"
 
 

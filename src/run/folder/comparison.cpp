@@ -148,7 +148,7 @@ std::string bed_change_table(const Comparison& c) {
     return text +
            fmt::format(
                "\nSimulated is the change of the bed with what lies on it at the end, as a second survey would see it. "
-               "Changes of at most {:.3g} m count as none, and the release of the start is left out. Misplaced: {:.6g} "
+               "Changes of at most {:.3g} m count as none, and what was released is left out. Misplaced: {:.6g} "
                "m3, {} % of "
                "the surveyed volume. Where one of the two changes ({:.6g} m2): mean absolute error {} m, root mean "
                "square error {} m.\n\n",
@@ -169,10 +169,11 @@ std::optional<Raster> solids_at_end(const std::vector<ProductRaster>& rasters) {
 }
 
 Comparison compare_rasters(const std::vector<ProductRaster>& rasters, const Raster* bed, double limit,
-                           const Survey& survey, const std::optional<Vec2>& start) {
+                           const Survey& survey, const std::optional<Vec2>& start, const Raster* later) {
     const std::optional<Raster> solids = solids_at_end(rasters);
     SimulatedRun run;
     run.start = start;
+    run.released_later = later;
     run.peak_depth = raster_named(rasters, "peak_depth");
     run.final_depth = solids ? &*solids : nullptr;
     run.deposited_depth = raster_named(rasters, "deposited_depth");

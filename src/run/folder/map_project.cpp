@@ -52,6 +52,7 @@ constexpr RasterRule kRasters[] = {
     {"Results", "peak_dynamic_pressure", "Peak dynamic pressure"},
     {"Results", "peak_pressure", "Peak pressure on the bed"},
     {"Results", "arrival_time", "Arrival time"},
+    {"Results", "lying_depth", "Depth at the end, with what became bed"},
     {"Results", "final_depth", "Depth at the end"},
     {"Results", "final_water_depth", "Free water at the end"},
     {"Results", "final_damage", "Damage at the end"},

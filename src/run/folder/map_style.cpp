@@ -21,12 +21,7 @@ Colormap colours_of(const std::string& name) {
 ColourRange range_of(const ProductRaster& product, const ProductRaster* peak_depth, double limit, Colormap map) {
     std::optional<std::pair<double, double>> given;
     if (product.name.find("damage") != std::string::npos) given = {0.0, 1.0};
-    if (product.name == "bed_change") {
-        double most = 0.0;
-        for (const double value : product.raster.values)
-            if (std::abs(value) > most) most = std::abs(value);
-        if (most > 0.0) given = {-most, most};
-    }
+    if (product.name == "bed_change") return colour_range(product.raster.values, 0.0, map, {});  // where it changes
     const bool thick = product.unit == "m" && map != Colormap::diverging;  // shown where they are thick themselves
     if (thick)
         return colour_range(product.raster.values, limit, map, given,

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/version.h"
+#include "compare/deposit.h"
 #include "io/gdal_reader.h"
 #include "io/gdal_writer.h"
 #include "scene/parameters.h"
@@ -21,7 +22,14 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char *kElevation = "elevation", *kFinalElevation = "final_elevation", *kMetres = "m";
-constexpr const char* kGroundAtEnd = "elevation of the bed at the end of the run";
+constexpr const char *kGroundAtEnd = "elevation of the bed at the end of the run", *kLying = "lying_depth",
+                     *kLiesThere = "depth of what lies there at the end, flow and what has become bed, along gravity";
+
+/// Of a run with erodible.bed_evolves = false, beside a bed_change that is not 0.
+constexpr const char* kGroundStayed =
+    "elevation of the bed at the end of the run: that of the start, since erodible.bed_evolves is false; bed_change is "
+    "not "
+    "in it";
 
 /// How a node field becomes a raster.
 struct ProductRule {
@@ -45,6 +53,7 @@ constexpr ProductRule rules[] = {
     {"eroded_depth", "eroded_depth", 0, "m", "depth of the original bed that the flow took, along gravity"},
     {"deposited_depth", "deposited_depth", 0, "m",
      "depth of what the flow left on the bed and lies there at the end, along gravity"},
+    {kLying, "deposited_depth", 0, kMetres, kLiesThere},
     {"bed_change", "bed_change", 0, "m", "deposited depth less eroded depth"},
     {kFinalElevation, kElevation, 0, kMetres, kGroundAtEnd, false},
     {"final_damage", "damage", 0, "1", "damage at the end of the run: 0 whole, 1 grains; where material lies", false},
@@ -81,7 +90,9 @@ bool needed(const std::string& name) {
 }
 
 bool is_of(const Frame& last, const ProductRule& rule) {
-    if (std::string(rule.name) == kFinalElevation) return false;  // a frame's bed is filtered: add_ground_at_end()
+    const std::string name = rule.name;
+    if (name == kFinalElevation) return false;  // a frame's bed is filtered: add_ground_at_end()
+    if (name == kLying) return false;           // of two fields: add_lying_depth()
     return last.node(rule.field) != nullptr || needed(rule.name);
 }
 
@@ -131,13 +142,34 @@ std::vector<ProductRaster> product_rasters(const Frame& last, const std::string&
 void add_ground_at_end(std::vector<ProductRaster>& rasters, const Raster& bed, bool follows) {
     const ProductRaster* const change = find_product(rasters, "bed_change");
     if (change == nullptr) return;
-    ProductRaster ground{kFinalElevation, kMetres, kGroundAtEnd, change->raster};
+    ProductRaster ground{kFinalElevation, kMetres, follows ? kGroundAtEnd : kGroundStayed, change->raster};
     ground.raster.source = kFinalElevation;
     std::vector<double>& z = ground.raster.values;  // its change so far
     expect(bed.values.size() == z.size(), "rasters and the bed that they show have the same nodes");
     for (std::size_t node = 0; node < z.size(); ++node)
         if (!std::isnan(z[node])) z[node] = bed.values[node] + (follows ? z[node] : 0.0);
     rasters.push_back(std::move(ground));
+}
+
+void add_lying_depth(std::vector<ProductRaster>& rasters) {
+    const ProductRaster *flow = find_product(rasters, "final_depth"), *bed = find_product(rasters, "deposited_depth");
+    if (flow == nullptr || bed == nullptr) return;
+    ProductRaster lying{kLying, kMetres, kLiesThere, with_deposit(flow->raster, &bed->raster)};
+    lying.raster.source = kLying;
+    rasters.push_back(std::move(lying));
+}
+
+const ProductRaster* find_lying(const std::vector<ProductRaster>& rasters) {
+    const ProductRaster* const lying = find_product(rasters, kLying);
+    return lying ? lying : find_product(rasters, "final_depth");
+}
+
+std::optional<Raster> ever_covered(const std::vector<ProductRaster>& rasters) {
+    const ProductRaster *peak = find_product(rasters, "peak_depth"), *flow = find_product(rasters, "final_depth"),
+                        *bed = find_product(rasters, "deposited_depth");
+    if (peak == nullptr) return {};
+    if (flow == nullptr || bed == nullptr) return peak->raster;
+    return deepest_cover(peak->raster, with_deposit(flow->raster, &bed->raster));
 }
 
 std::vector<ProductRaster> friction_rasters(const Friction& friction, const Raster& bed) {
@@ -209,8 +241,8 @@ std::vector<ProductRaster> read_rasters(const fs::path& run_dir) {
     return rasters;
 }
 
-void write_outline(const fs::path& run_dir, const Raster& peak_depth, double limit) {
-    write_footprint(run_dir / "footprint.geojson", peak_depth, limit);
+void write_outline(const fs::path& run_dir, const Raster& covered, double limit) {
+    write_footprint(run_dir / "footprint.geojson", covered, limit);
 }
 
 }  // namespace frana

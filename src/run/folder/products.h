@@ -1,6 +1,7 @@
 #pragma once
 // What a run leaves for a GIS: peak and final rasters, and the outline of everything ever covered.
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,13 +39,23 @@ private:
 
 /// The rasters of a run as its frame has them: peak_depth, peak_speed, peak_pressure, peak_dynamic_pressure
 /// (when the solver has it), arrival_time, final_depth, final_velocity_x, final_velocity_y, final_damage of what can break,
-/// final_water_depth beside it, eroded_depth, deposited_depth and bed_change of an erodible bed. Negative arrival times and
+/// final_water_depth beside it, eroded_depth, deposited_depth and bed_change of a bed that changes. Negative arrival times and
 /// all nodes without terrain become nodata.
 std::vector<ProductRaster> product_rasters(const Frame& last, const std::string& crs_wkt);
 
 /// Adds final_elevation to rasters with a bed_change: the bed of the start, and where it follows, that change. The solver's
 /// own bed is filtered, and has barriers in it: no later run could begin on that.
 void add_ground_at_end(std::vector<ProductRaster>& rasters, const Raster& bed, bool follows);
+
+/// Adds lying_depth to rasters of a run whose bed gains: final_depth, and what of the flow has become bed.
+void add_lying_depth(std::vector<ProductRaster>& rasters);
+
+/// What lies there at the end: lying_depth where the run has it, else final_depth; or nullptr.
+const ProductRaster* find_lying(const std::vector<ProductRaster>& rasters);
+
+/// The largest depth known of each place: peak_depth, and where it is more, what lies there at the end. Nothing without
+/// peak_depth.
+std::optional<Raster> ever_covered(const std::vector<ProductRaster>& rasters);
 
 /// The parameters of a friction that differs in space, as the nodes of its bed have them: mu, xi, ...
 std::vector<ProductRaster> friction_rasters(const Friction& friction, const Raster& bed);
@@ -68,7 +79,7 @@ void write_rasters(const std::filesystem::path& run_dir, const std::vector<Produ
 /// terrain. Throws UserError when a file cannot be read.
 std::vector<ProductRaster> read_rasters(const std::filesystem::path& run_dir);
 
-/// Writes footprint.geojson: where peak_depth exceeds `limit` [m]. Throws UserError.
-void write_outline(const std::filesystem::path& run_dir, const Raster& peak_depth, double limit);
+/// Writes footprint.geojson: where a depth (ever_covered) exceeds `limit` [m]. Throws UserError.
+void write_outline(const std::filesystem::path& run_dir, const Raster& covered, double limit);
 
 }  // namespace frana

@@ -49,17 +49,20 @@ std::string left_text(const RunRecord& r) {
 }
 
 /// "took 12 300 m3 (growth 1.8), 0.7 m deep at most, budget 3e-16": volumes as they are in the flow. What it grew from is
-/// what was released and came in.
+/// what was released and came in, by what the bed of the start gave: what is left and taken again is not new.
 std::string bed_text(const RunRecord& r) {
     const Status::Bed& bed = r.summary.last.bed;
-    const double given = r.summary.first.mass + mass_came_in(r.summary.first, r.summary.last);
-    return fmt::format(
-        "the flow took {:.6g} m3 of it and of what it had left behind, by the density of the flow (its mass grew "
-        "{}{:.3g} "
-        "times), {:.3g} m "
-        "deep at most; left behind {:.6g} m3; balance {:.1e}",
-        bed.eroded / r.density, bed.deposited > 0.0 ? "at most " : "", given > 0.0 ? (given + bed.eroded) / given : 1.0,
-        bed.deepest, bed.deposited / r.density, budget(r.summary.first, r.summary.last).bed_error);
+    const double given = r.summary.first.mass + mass_came_in(r.summary.first, r.summary.last), again = taken_again(r);
+    std::string text = fmt::format(
+        "the flow took {:.6g} m3 of it, by the density of the flow (its mass grew {:.3g} times), {:.3g} m deep at "
+        "most; "
+        "left behind {:.6g} m3",
+        r.taken_of_bed / r.density, given > 0.0 ? (given + r.taken_of_bed) / given : 1.0, bed.deepest,
+        bed.deposited / r.density);
+    if (bed.deposited > 0.0)
+        text += fmt::format(", of which it took {:.6g} m3 again and {:.6g} m3 lie there at the end", again / r.density,
+                            lies_behind(r) / r.density);
+    return text + fmt::format("; balance {:.1e}", budget(r.summary.first, r.summary.last).bed_error);
 }
 
 /// "9100 m3; by the tables 9100 m3, difference 1e-12; of their 12000 m3 2900 m3 had not come in".
@@ -82,11 +85,26 @@ std::string late_text(const LateEntry& late) {
                    : fmt::format("{:.6g} m3 did not: the flow did not reach it", late.volume);
 }
 
+/// Where material becomes bed, what lies there and what still flows are two depths.
+std::string depths_at_end(const RunRecord& r) {
+    const auto metres = [](double depth) { return fmt::format("{:.4g} m", depth); };
+    if (r.extras.water && !r.of_water_alone())
+        return row("deepest at the end, without free water", metres(r.final_depth));
+    if (!(r.summary.last.bed.deposited > 0.0)) return row("deepest at the end", metres(r.final_depth));
+    return row("deepest at the end, with what has become bed", metres(r.final_depth)) +
+           row("deepest flow at the end", metres(r.final_flow_depth));
+}
+
 std::string results(const RunRecord& r) {
     const RunSummary& s = r.summary;
     std::string text = "## Results\n\n| Quantity | Value |\n|---|---|\n";
-    text +=
-        row(r.of_water_alone() ? "water at the start" : "release volume", fmt::format("{:.6g} m3", r.release_volume));
+    const char* released = r.of_water_alone()      ? "water at the start"
+                           : r.extras.late.empty() ? "release volume"
+                                                   : "release volume at the start";
+    text += row(released, fmt::format("{:.6g} m3", r.release_volume));
+    if (!r.extras.late.empty())
+        text += row("release volume, with what entered later",
+                    fmt::format("{:.6g} m3", r.release_volume + released_later(r)));
     if (r.extras.inflow) text += row("came in by inflows", inflow_text(*r.extras.inflow));
     for (const LateEntry& late : r.extras.late) text += row("entered later: " + late.name, late_text(late));
     text += row("simulated time",
@@ -104,8 +122,7 @@ std::string results(const RunRecord& r) {
     if (std::isfinite(r.flow_width))
         text += row("width of the flow, median over its length",
                     fmt::format("{:.4g} m, {:.3g} cells", r.flow_width, r.flow_width / r.grid.cell));
-    text += row(r.extras.water && !r.of_water_alone() ? "deepest at the end, without free water" : "deepest at the end",
-                fmt::format("{:.4g} m", r.final_depth));
+    text += depths_at_end(r);
     text += row("mean speed at the end", fmt::format("{:.3g} m/s", s.last.mean_speed));
     if (r.extras.breakage) {
         const Breakage& b = *r.extras.breakage;
@@ -274,16 +291,21 @@ std::string barriers_of_structure(const RunRecord& r) {
                of.pushed[0], of.pushed[1]);
 }
 
-std::string barrier_row(const BarrierSummary& b) {
-    const bool reached = std::isfinite(b.run_up);
-    const std::string run_up = reached ? fmt::format("{:.5g} m", b.run_up) : "-";
-    if (b.first_contact < 0.0)
-        return fmt::format("| {} | {} | - | {} | {:.5g} m3 |\n", b.name, b.blur <= 0.0 && reached ? "-" : "none",
-                           run_up, b.overtopped);
-    if (b.blur <= 0.0)
-        return fmt::format("| {} | {:.4g} s | - | {} | {:.5g} m3 |\n", b.name, b.first_contact, run_up, b.overtopped);
-    return fmt::format("| {} | {:.4g} s | {:.4g}, {:.4g}, {:.4g} N s | {} | {:.5g} m3 |\n", b.name, b.first_contact,
-                       b.impulse[0], b.impulse[1], b.impulse[2], run_up, b.overtopped);
+/// `hit`: what the rasters tell of the flow at its faces; of a wall along a line or a mesh nothing.
+std::string barrier_row(const BarrierSummary& b, const BarrierHit& hit) {
+    const bool reached = std::isfinite(b.run_up), forces = b.blur > 0.0;
+    const auto or_dash = [](double value, const char* unit) {
+        return std::isfinite(value) ? fmt::format("{:.4g} {}", value, unit) : std::string("-");
+    };
+    const std::string contact = b.first_contact >= 0.0 ? fmt::format("{:.4g} s", b.first_contact)
+                                : !forces && reached   ? "-"
+                                                       : "none";
+    const std::string impulse = b.first_contact >= 0.0 && forces ? fmt::format("{:.4g}, {:.4g}, {:.4g} N s",
+                                                                               b.impulse[0], b.impulse[1], b.impulse[2])
+                                                                 : "-";
+    return fmt::format("| {} | {} | {} | {} | {} | {} | {:.5g} m3 |\n", b.name, contact, or_dash(hit.depth, "m"),
+                       or_dash(1e-3 * hit.pressure, "kPa"), impulse, reached ? fmt::format("{:.5g} m", b.run_up) : "-",
+                       b.overtopped);
 }
 
 /// Without what is round-off beside the largest entry.
@@ -315,13 +337,15 @@ std::string barriers(const RunRecord& r) {
     if (r.barriers.empty()) return "";
     if (r.extras.breakage) return barriers_of_structure(r);
     std::string text =
-        "## Barriers\n\n| Barrier | First contact | Impulse x, y, z | Run-up to elevation | Over it |\n"
-        "|---|---|---|---|---|\n";
+        "## Barriers\n\n| Barrier | First contact | Deepest flow at it | Dynamic pressure | Impulse x, y, z | Run-up "
+        "to "
+        "elevation | Over it |\n|---|---|---|---|---|---|---|\n";
     double blur = 0.0, hardest = 0.0;
     for (const BarrierSummary& b : r.barriers)
         blur = std::max(blur, b.blur), hardest = std::max(hardest, b.raw_peak_force);
     const std::vector<std::size_t> shown = shown_barriers(r);
-    for (const std::size_t n : shown) text += barrier_row(r.barriers[n]);
+    for (const std::size_t n : shown)
+        text += barrier_row(r.barriers[n], n < r.barrier_hits.size() ? r.barrier_hits[n] : BarrierHit());
     if (shown.size() < r.barriers.size()) {
         std::size_t hit = 0;
         for (std::size_t n = 0; n < r.barriers.size(); ++n)
@@ -430,8 +454,9 @@ std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_d
                         left_text(r), budget(s.first, s.last).mass_error);
     text += fmt::format("  deepest    {:.4g} m, fastest {:.4g} m/s, front at {:.5g} m\n", s.extremes.max_depth,
                         s.extremes.max_speed, s.extremes.max_front);
-    text += fmt::format("  covered    {:.5g} m2 deeper than {:.3g} m; deepest at the end {:.4g} m\n", r.footprint_area,
-                        r.footprint_depth, r.final_depth);
+    text +=
+        fmt::format("  covered    {:.5g} m2 deeper than {:.3g} m; deepest at the end {:.4g} m{}\n", r.footprint_area,
+                    r.footprint_depth, r.final_depth, s.last.bed.deposited > 0.0 ? ", with what became bed" : "");
     if (r.comparison) text += fmt::format("  survey     {}\n", comparison_line(*r.comparison));
     text += fmt::format("  report     {}\n", place("report.md"));
     text += fmt::format("  pictures   {}\n", r.figures.empty() ? "-" : (run_dir / "figures").string());

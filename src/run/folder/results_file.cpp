@@ -20,10 +20,10 @@ std::vector<AttributedShape> outlines_where(const Raster& raster, const Inside& 
     return pixel_outlines(raster.geometry, std::move(marks));
 }
 
-ShapeLayer deeper(const char* layer, const Raster& peak_depth, const std::vector<double>& depths) {
+ShapeLayer deeper(const char* layer, const Raster& covered, const std::vector<double>& depths) {
     ShapeLayer all{layer, {}};
     for (const double depth : depths)
-        for (AttributedShape& shape : outlines_where(peak_depth, [&](double value) { return value > depth; })) {
+        for (AttributedShape& shape : outlines_where(covered, [&](double value) { return value > depth; })) {
             shape.attributes.insert(shape.attributes.begin(), {"depth_m", depth});
             all.shapes.push_back(std::move(shape));
         }
@@ -92,17 +92,37 @@ ShapeLayer barriers(const std::vector<ProductRaster>& rasters, RunRecord& record
     }
 }
 
+/// Their outlines. What began as a mask or a raster is known by its pixels.
+ShapeLayer releases(const std::vector<ProductRaster>& rasters, RunRecord& record) {
+    ShapeLayer layer{"release", {}};
+    if (rasters.empty()) return layer;
+    try {
+        layer = release_layer(record.release_sources, record.extras.late, record.release_volume,
+                              rasters.front().raster.crs_wkt);
+    } catch (const UserError& error) {
+        record.warnings.push_back(fmt::format("outlines of releases were not written for a GIS: {}", error.what()));
+    }
+    const auto& all = record.release_sources;
+    const bool bare = layer.shapes.empty() || std::any_of(all.begin(), all.end(), [](const ReleaseSource& source) {
+                          return !source.late && source.outline.empty();
+                      });
+    const ProductRaster* const arrival = find_product(rasters, "arrival_time");
+    if (bare && arrival)
+        for (AttributedShape& shape : outlines_where(arrival->raster, [](double time) { return time == 0.0; }))
+            layer.shapes.push_back(std::move(shape));
+    return layer;
+}
+
 }  // namespace
 
 std::vector<ShapeLayer> result_layers(const Scene& scene, const std::vector<ProductRaster>& rasters,
                                       RunRecord& record) {
     std::vector<ShapeLayer> layers{barriers(rasters, record)};
-    if (const ProductRaster* peak = find_product(rasters, "peak_depth")) {
-        layers.push_back(deeper("footprint", peak->raster, {scene.output.footprint_depth}));
-        layers.push_back(deeper("outlines", peak->raster, {0.5, 1.0, 2.0, 5.0}));
+    if (const std::optional<Raster> covered = ever_covered(rasters)) {
+        layers.push_back(deeper("footprint", *covered, {scene.output.footprint_depth}));
+        layers.push_back(deeper("outlines", *covered, {0.5, 1.0, 2.0, 5.0}));
     }
-    if (const ProductRaster* arrival = find_product(rasters, "arrival_time"))
-        layers.push_back({"release", outlines_where(arrival->raster, [](double time) { return time == 0.0; })});
+    layers.push_back(releases(rasters, record));
     ShapeLayer gauges{"gauges", {}}, profiles{"profiles", {}}, survey{"survey", {}};
     if (!rasters.empty()) {
         for (const Gauge& gauge : scene.gauges)

@@ -233,6 +233,18 @@ ChartFigure barrier_chart(const FigureSource& source, const std::string& name, c
     return figure;
 }
 
+/// Whether a table has rows, and nothing in them but the time.
+bool says_nothing(const Table& table) {
+    for (const std::string& name : table.columns) {
+        if (name == "t") continue;
+        const Column& values = table.column(name);
+        if (std::any_of(values.begin(), values.end(),
+                        [](double value) { return std::isfinite(value) && value != 0.0; }))
+            return false;
+    }
+    return table.rows() > 0;
+}
+
 }  // namespace
 
 void add_profile(const FigureSource& source, const std::string& name, Gallery& gallery) {
@@ -283,6 +295,7 @@ void add_barriers(const FigureSource& source, Gallery& gallery) {
     std::sort(tables.begin(), tables.end());
     for (const fs::path& file : tables) {
         const std::string name = file.stem().string();
+        if (says_nothing(read_table(file))) continue;  // never hit: a picture of axes alone
         gallery.add({fmt::format("figures/barrier_{}.png", name), fmt::format("barrier {}", name)},
                     [&source, name, file](const fs::path& png, std::string& why_not) {
                         const Table table = read_table(file);

@@ -14,10 +14,13 @@
 #include "run/folder/run_film.h"
 #include "vtk_io/figures/map_figure.h"
 #include "vtk_io/figures/map_figure_perspective.h"
+#include "vtk_io/figures/map_range.h"
 
 namespace frana {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr const char* kWithBed = "depth at the end, with what has become bed";
 
 /// Outlines stay smooth where there is no terrain.
 std::vector<double> depth_without_gaps(const ProductRaster& depth) {
@@ -56,7 +59,8 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
     map.survey = source.survey;
     map.barriers = barrier_plans(source.barriers);
     for (const Profile& profile : source.profiles) map.profiles.push_back({profile.name, profile.line});
-    for (const Section& section : source.sections) map.profiles.push_back({section.name, section.line});
+    for (const Section& section : source.sections)
+        if (!section.line.empty()) map.profiles.push_back({section.name, section.line});
     if (!source.sections.empty()) map.profiles_are = source.profiles.empty() ? "section" : "profile, section";
     for (const Gauge& gauge : source.gauges) map.gauges.push_back({gauge.name, gauge.point});
     map.footer = source.footer;
@@ -67,21 +71,24 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
     return map;
 }
 
-/// What the flow took of its bed and left there, loss blue and gain red, over the flow's extent.
+/// What the flow took of its bed and left there, loss blue and gain red, wherever flow or a change is.
 void add_change_map(const FigureSource& source, Gallery& gallery) {
     const ProductRaster *change = find_product(source.rasters, "bed_change"),
                         *peak = find_product(source.rasters, "peak_depth");
     if (change == nullptr || peak == nullptr) return;
-    double most = 0.0;
-    for (const double value : change->raster.values) most = std::fmax(most, std::abs(value));
-    if (most == 0.0) return;
+    const std::vector<double>& values = change->raster.values;
+    if (std::none_of(values.begin(), values.end(), [](double value) { return std::abs(value) > 0.0; })) return;
     gallery.add({"figures/map_bed_change.png", "change of the bed"},
-                [&source, change, peak, most](const fs::path& png, std::string& why_not) {
+                [&source, change, peak](const fs::path& png, std::string& why_not) {
                     MapFigure map = map_of(source, *change, "change of the bed", nullptr);
                     map.outline_field = depth_without_gaps(*peak);
-                    map.outline_label = "peak depth [m]";
+                    for (std::size_t k = 0; k < map.field.size(); ++k)
+                        if (std::abs(map.field[k]) > 0.0)
+                            map.outline_field[k] = std::max(map.outline_field[k], 2.0 * source.footprint_depth);
+                    map.outline_label = "change of the bed, or flow of [m]";
                     map.colormap = Colormap::diverging;
-                    map.range = {-most, most};
+                    const ColourRange range = colour_range(map.field, 0.0, Colormap::diverging, {});
+                    map.range = {range.low, range.high};
                     return render_map(map, png, why_not);
                 });
 }
@@ -122,11 +129,13 @@ void add_figures(const FigureSource& source, Gallery& gallery) {
         const char* name;
         const char* what;
     };
-    for (const MapRule& rule : {MapRule{"peak_depth", "peak depth"}, MapRule{"peak_speed", "peak speed"},
-                                MapRule{"peak_dynamic_pressure", "peak dynamic pressure"},
-                                MapRule{"arrival_time", "arrival time"}, MapRule{"final_depth", "depth at the end"}})
+    for (const MapRule& rule :
+         {MapRule{"peak_depth", "peak depth"}, MapRule{"peak_speed", "peak speed"},
+          MapRule{"peak_dynamic_pressure", "peak dynamic pressure"}, MapRule{"arrival_time", "arrival time"}})
         if (const ProductRaster* product = find_product(source.rasters, rule.name))
             add_map(source, *product, rule.what, find_product(source.rasters, "peak_depth"), gallery);
+    if (const ProductRaster* lying = find_lying(source.rasters))
+        add_map(source, *lying, lying->name == "final_depth" ? "depth at the end" : kWithBed, nullptr, gallery);
     if (const ProductRaster* damage = find_product(source.rasters, "final_damage"))
         add_map(source, *damage, "damage at the end", find_product(source.rasters, "final_depth"), gallery);
     if (const ProductRaster* water = find_product(source.rasters, "final_water_depth"))
@@ -173,8 +182,9 @@ void add_overlay(const FigureSource& source, Gallery& gallery) {
         map.profiles.clear();
         map.profiles_are = "runout path";
         if (!source.runout_path.empty()) map.profiles.push_back({"runout path", source.runout_path});
-        map.simulated = pixel_outline(peak->raster, source.footprint_depth);
-        const Overlap areas = overlap(peak->raster, source.footprint_depth, rings_of(*source.survey));
+        const Raster covered = *ever_covered(source.rasters);
+        map.simulated = pixel_outline(covered, source.footprint_depth);
+        const Overlap areas = overlap(covered, source.footprint_depth, rings_of(*source.survey));
         map.footer = fmt::format("both {:.0f} m2, simulated only {:.0f} m2, surveyed only {:.0f} m2, IoU {:.3f}; ",
                                  areas.hit, areas.beyond, areas.missed, areas.iou()) +
                      map.footer;

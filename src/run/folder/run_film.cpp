@@ -26,17 +26,21 @@ std::vector<Index> spread_frames(Index count, Index most) {
     return chosen;
 }
 
-/// The depth of an output with the survey, without a title. Frames may show a smaller part of the terrain than the last
+/// Whether depth in frames stands for what has become bed too.
+bool shows_bed(const FigureSource& source) { return find_product(source.rasters, "lying_depth") != nullptr; }
+
+/// The depth of an output with the survey, without a title. What has become bed counts. Frames may show a smaller part of the terrain than the last
 /// one. UserError when the frame has none on the terrain's nodes.
 MapFigure depth_map(const FigureSource& source, Index number) {
-    LoadedFrame frame = read_frame(source.run_dir, number, {"depth"});
+    LoadedFrame frame = read_frame(source.run_dir, number, {"depth", "deposited_depth"});
     const auto box = box_of(source.bed.geometry, frame.grid);
     if (!frame.has("depth") || !box) throw UserError("the frames hold no depth on the terrain's nodes");
+    add_deposit(frame);
     MapFigure map;
     map.bed = source.bed;
     map.field = part_of(Raster{frame.grid, std::move(frame.nodes.at("depth")), "", ""}, *box).values;
     map.shown_above = source.footprint_depth;
-    map.field_label = "depth [m]";
+    map.field_label = shows_bed(source) ? "depth with new bed [m]" : "depth [m]";
     map.thick_release = true;
     map.survey = source.survey;
     map.barriers = barrier_plans(source.barriers);
@@ -55,7 +59,8 @@ bool draw_frames(const FigureSource& source, const std::vector<double>& times, c
         MapFigure map = depth_map(source, number);
         view.apply(map);
         const double time = times[static_cast<std::size_t>(number)];
-        map.title = fmt::format("{}: depth, t = {:.{}f} s", source.title, time, digits);
+        map.title = fmt::format("{}: depth{}, t = {:.{}f} s", source.title,
+                                shows_bed(source) ? " with what has become bed" : "", time, digits);
         map.footer = source.footer;
         map.width = source.width;
         map.height = source.height;
@@ -64,6 +69,14 @@ bool draw_frames(const FigureSource& source, const std::vector<double>& times, c
 }
 
 }  // namespace
+
+void add_deposit(LoadedFrame& frame) {
+    if (!frame.has("depth") || !frame.has("deposited_depth")) return;
+    std::vector<double>& depth = frame.nodes.at("depth");
+    const std::vector<double>& deposited = frame.nodes.at("deposited_depth");
+    for (std::size_t n = 0; n < depth.size(); ++n)
+        if (deposited[n] > 0.0) depth[n] += deposited[n];
+}
 
 int decimals_of(const std::vector<double>& times) {
     int digits = 0;
@@ -91,16 +104,17 @@ void add_filmstrip(const FigureSource& source, Gallery& gallery) {
     if (source.bed.values.empty() || !fs::exists(source.run_dir / "grid.pvd")) return;
     const Index count = static_cast<Index>(frame_times(source.run_dir).size());
     if (count < 2) return;
-    gallery.add({"figures/filmstrip_depth.png", "depth at several times"},
-                [&source, count](const fs::path& png, std::string& why_not) {
-                    const std::vector<double> times = frame_times(source.run_dir);
-                    Filmstrip strip;
-                    for (const Index number : spread_frames(count, 6)) {
-                        strip.maps.push_back(depth_map(source, number));
-                        strip.maps.back().title = fmt::format("t = {:.6g} s", times[static_cast<std::size_t>(number)]);
-                    }
-                    return render_filmstrip(strip, png, why_not);
-                });
+    const char* const words =
+        shows_bed(source) ? "depth at several times, with what has become bed" : "depth at several times";
+    gallery.add({"figures/filmstrip_depth.png", words}, [&source, count](const fs::path& png, std::string& why_not) {
+        const std::vector<double> times = frame_times(source.run_dir);
+        Filmstrip strip;
+        for (const Index number : spread_frames(count, 6)) {
+            strip.maps.push_back(depth_map(source, number));
+            strip.maps.back().title = fmt::format("t = {:.6g} s", times[static_cast<std::size_t>(number)]);
+        }
+        return render_filmstrip(strip, png, why_not);
+    });
 }
 
 void add_film(const FigureSource& source, const std::string& kind, Gallery& gallery) {

@@ -8,6 +8,11 @@
 
 namespace frana {
 
+struct LoadedFrame;
+
+/// Adds what has become bed to a frame's depth, where it knows of any: films would show it vanish.
+void add_deposit(LoadedFrame& frame);
+
 /// figures/filmstrip_depth.png, the depth at up to six output times side by side; nothing for a run without frames on
 /// the grid.
 void add_filmstrip(const FigureSource& source, Gallery& gallery);

@@ -31,7 +31,7 @@ static std::string friction_names() {
 const std::vector<ProductKind>& product_kinds() {
     static const std::string raster_names =
         "(peak_(depth|speed|pressure|dynamic_pressure)|arrival_time|final_(depth|velocity_[xy]|elevation|damage|water_"
-        "depth)|(eroded|deposited)_depth|bed_change|elevation)";
+        "depth)|(eroded|deposited|lying)_depth|bed_change|elevation)";
     static const std::vector<ProductKind> kinds = {
         {"", "report\\.md", "this page", false},
         {"", "case\\.toml", "the case as given", false},

@@ -12,7 +12,6 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "compare/deposit.h"
 #include "compare/flow_width.h"
 #include "io/netcdf_series.h"
 #include "io/xdmf_writer.h"
@@ -33,6 +32,7 @@
 #include "run/folder/run_page.h"
 #include "run/folder/states.h"
 #include "run/simulation.h"
+#include "scene/taken_of_bed.h"
 #include "terrain/part_of.h"
 #include "vtk_io/survey_vtp.h"
 #include "vtk_io/writers.h"
@@ -61,10 +61,8 @@ double largest(const std::vector<ProductRaster>& rasters, const char* name) {
 }
 
 /// The flow's width, and a remark where too few cells lie across it.
-void note_width(RunRecord& record, const std::vector<ProductRaster>& rasters) {
-    const ProductRaster* peak = find_product(rasters, "peak_depth");
-    if (peak == nullptr) return;
-    record.flow_width = flow_width(peak->raster, record.footprint_depth);
+void note_width(RunRecord& record, const Raster& covered) {
+    record.flow_width = flow_width(covered, record.footprint_depth);
     const std::string remark = width_remark(record.flow_width, record.grid.cell);
     if (!remark.empty()) record.warnings.push_back(remark);
 }
@@ -78,18 +76,24 @@ void note_simulation(RunRecord& record, const Scene& scene, const Simulation& si
 }
 
 void note_results(RunRecord& record, const std::vector<ProductRaster>& rasters) {
-    if (const ProductRaster* peak = find_product(rasters, "peak_depth"))
-        record.footprint_area = area_deeper(peak->raster, record.footprint_depth);
-    note_width(record, rasters);
+    if (const std::optional<Raster> covered = ever_covered(rasters)) {
+        record.footprint_area = area_deeper(*covered, record.footprint_depth);
+        note_width(record, *covered);
+    }
     record.peak_depth = largest(rasters, "peak_depth");
     record.peak_speed = largest(rasters, "peak_speed");
     record.peak_pressure = largest(rasters, "peak_pressure");
     record.peak_dynamic_pressure = largest(rasters, "peak_dynamic_pressure");
     if (const std::optional<Raster> solids = solids_at_end(rasters)) {
-        const ProductRaster* bed = find_product(rasters, "deposited_depth");
-        for (const double depth : with_deposit(*solids, bed ? &bed->raster : nullptr).values)
-            if (depth > record.final_depth) record.final_depth = depth;
+        for (const double depth : solids->values)
+            if (depth > record.final_flow_depth) record.final_flow_depth = depth;
+        record.final_depth = std::max(record.final_flow_depth, largest(rasters, "lying_depth"));
     }
+}
+
+void note_taken(RunRecord& record, const Scene& scene, const std::vector<ProductRaster>& rasters) {
+    if (const ProductRaster* eroded = find_product(rasters, "eroded_depth"))
+        record.taken_of_bed = taken_of_bed(scene, eroded->raster.geometry, eroded->raster.values);
 }
 
 /// compare.json, when the case gives a survey. The run is worth more than its scores: trouble is a warning.
@@ -102,9 +106,12 @@ void compare_with_survey(const Scene& scene, const Raster& bed, const fs::path& 
         others.footprint.clear();  // was read with the scene
         Survey survey = read_survey_files(others, peak, record.warnings);
         survey.footprint = *scene.survey;
-        Comparison comparison = compare_rasters(rasters, &bed, scene.output.footprint_depth, survey, record.start);
+        const std::optional<Raster> later = released_later_on(record.release_sources, record.extras.late, peak);
+        Comparison comparison = compare_rasters(rasters, &bed, scene.output.footprint_depth, survey, record.start,
+                                                later ? &*later : nullptr);
         write_scores(run_dir, run_dir / "compare.json", comparison);
-        if (scene.output.vtk) write_survey(run_dir, bed, peak, comparison.limit, rings_of(survey.footprint));
+        if (scene.output.vtk)
+            write_survey(run_dir, bed, *ever_covered(rasters), comparison.limit, rings_of(survey.footprint));
         record.comparison = std::move(comparison);
     } catch (const UserError& error) {
         record.warnings.push_back(fmt::format("the run was not compared with the survey: {}", error.what()));
@@ -307,7 +314,9 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
         for (const std::string& warning : keeper->warnings()) record.warnings.push_back(warning);
     }
     for (const std::string& warning : insitu_warnings(record.insitu)) record.warnings.push_back(warning);
+    if (scene.deposition || scene.forest) add_lying_depth(rasters);
     note_results(record, rasters);
+    note_taken(record, scene, rasters);
     const Raster bed = shown_bed(scene, simulation, rasters);
     add_ground_at_end(rasters, bed, scene.bed_evolves());
     add_friction(scene, simulation, rasters);
@@ -317,8 +326,8 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
 
     timed(record.summary, "rasters", [&] {
         if (scene.output.geotiff) write_rasters(run_dir, rasters, record.title);
-        if (const ProductRaster* peak = find_product(rasters, "peak_depth"))
-            write_outline(run_dir, peak->raster, scene.output.footprint_depth);
+        if (const std::optional<Raster> covered = ever_covered(rasters))
+            write_outline(run_dir, *covered, scene.output.footprint_depth);
         leave_barrier_table(scene, run_dir, rasters, record);
         leave_gis_files(scene, run_dir, rasters, record);
     });
@@ -345,7 +354,9 @@ RunRecord carry_out_in_memory(const Scene& scene, Simulation& simulation, RunRec
     record.summary =
         run(simulation, plan_of(scene, record.end < record.whole_end), observers, interrupt, progress, nullptr);
     note_simulation(record, scene, simulation);
+    if (scene.deposition || scene.forest) add_lying_depth(rasters);
     note_results(record, rasters);
+    note_taken(record, scene, rasters);
     add_ground_at_end(rasters, shown_bed(scene, simulation, rasters), scene.bed_evolves());
     add_friction(scene, simulation, rasters);
     return record;

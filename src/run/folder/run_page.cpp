@@ -10,6 +10,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "observe/table.h"
+#include "run/folder/run_film.h"
 #include "run/web/web_page.h"
 #include "scene/case_file.h"
 #include "terrain/part_of.h"
@@ -49,10 +50,15 @@ std::string end_of(const PlainJson& record) {
     return reason;
 }
 
+/// At the start and later [m3]; runs of an earlier version do not tell the latter.
+double released_in_all(const PlainJson& record) {
+    return record.at("release_volume").get<double>() + record.value("release_volume_later", 0.0);
+}
+
 std::vector<std::pair<std::string, std::string>> facts_of(const PlainJson& record) {
     const PlainJson results = record.at("results"), mass = record.at("budgets").at("mass");
     std::vector<std::pair<std::string, std::string>> facts = {
-        {"Released", measured(record.at("release_volume"), "m\u00b3")},
+        {"Released", measured(released_in_all(record), "m\u00b3")},
         {"Farthest front", measured(results.at("max_front"), "m")},
         {"Largest depth", measured(results.at("max_depth"), "m")},
         {"Largest speed", measured(results.at("max_speed"), "m/s")},
@@ -79,25 +85,28 @@ constexpr DrapeRule kDrapes[] = {
     {"peak_dynamic_pressure", "peak dynamic pressure", "kPa", Colormap::pressure, 1e-3},
     {"arrival_time", "arrival time", "s", Colormap::speed, 1.0},
     {"final_depth", "depth at the end", "m", Colormap::depth, 1.0},
+    {"lying_depth", "depth at the end, with what has become bed", "m", Colormap::depth, 1.0},
     {"bed_change", "change of the bed", "m", Colormap::diverging, 1.0},
 };
 
-/// The part of a raster that was ever covered, in units for people; nothing when there is none.
+/// The part of a raster that was ever covered, or changed, in units for people; nothing when there is none.
 std::optional<PageDrape> drape_of(const FigureSource& source, const DrapeRule& rule) {
     const ProductRaster *product = find_product(source.rasters, rule.name),
                         *peak = find_product(source.rasters, "peak_depth");
     if (product == nullptr || peak == nullptr) return {};
-    const bool bed = rule.colours == Colormap::diverging, end = std::string(rule.name) == "final_depth";
+    if (std::string(rule.name) == "final_depth" && product != find_lying(source.rasters)) return {};
+    const bool bed = rule.colours == Colormap::diverging, end = product == find_lying(source.rasters);
     const Raster& extent = end ? product->raster : peak->raster;
     PageDrape drape{rule.name, rule.label, rule.unit, rule.colours, 0.0, 1.0, product->raster};
     bool any = false;
     for (std::size_t n = 0; n < drape.raster.values.size(); ++n) {
         double& value = drape.raster.values[n];
-        value = extent.values[n] > source.footprint_depth ? value * rule.factor : Raster::nodata;
+        const bool shown = extent.values[n] > source.footprint_depth || (bed && value != 0.0);
+        value = shown ? value * rule.factor : Raster::nodata;
         any |= std::isfinite(value) && (!bed || value != 0.0);
     }
     if (!any) return {};
-    const ColourRange range = colour_range(drape.raster.values, kAll, rule.colours, {},
+    const ColourRange range = colour_range(drape.raster.values, bed ? 0.0 : kAll, rule.colours, {},
                                            drape.name == "peak_depth" ? Top::flow : Top::percentile);
     drape.low = range.low, drape.high = range.high;
     drape.above = range.more_above, drape.below = range.more_below;
@@ -187,6 +196,7 @@ FlowFrames frames_of_run(const FigureSource& source) {
     for (Index number = 0; number < static_cast<Index>(times.size()); ++number) {
         LoadedFrame frame = read_frame(source.run_dir, number);
         if (!frame.has("depth")) continue;
+        add_deposit(frame);
         std::vector<double>& depth = frame.nodes.at("depth");
         if (frame.has("elevation"))
             for (std::size_t n = 0; n < depth.size(); ++n)

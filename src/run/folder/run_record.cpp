@@ -103,13 +103,17 @@ Json energy_json(const RunSummary& s) {
             {"residual", budget(s.first, s.last).energy_residual}};
 }
 
-Json bed_json(const RunSummary& s) {
+Json bed_json(const RunRecord& record) {
+    const RunSummary& s = record.summary;
     const Status::Bed& bed = s.last.bed;
     return {{"unit", "kg"},
             {"initial", bed.initial},
             {"eroded", bed.eroded},
             {"deposited", bed.deposited},
             {"final", bed.mass},
+            {"taken_of_bed", record.taken_of_bed},
+            {"taken_again", taken_again(record)},
+            {"lies_behind", lies_behind(record)},
             {"relative_error", budget(s.first, s.last).bed_error},
             {"deepest", {{"unit", "m"}, {"eroded", bed.deepest}}}};
 }
@@ -137,6 +141,7 @@ Json results_json(const RunRecord& record) {
             {"flow_width", std::isfinite(record.flow_width) ? Json(record.flow_width) : Json(nullptr)},
             {"start", record.start ? Json{record.start->x(), record.start->y()} : Json(nullptr)},
             {"final_max_depth", record.final_depth},
+            {"final_max_flow_depth", record.final_flow_depth},
             {"peak_pressure", record.peak_pressure},
             {"peak_dynamic_pressure", record.peak_dynamic_pressure}};
 }
@@ -155,6 +160,7 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     record.case_file = scene.case_file.string();
     record.survey_files = survey_files(file);
     record.barrier_sources = barrier_sources(file);
+    record.release_sources = release_sources(file);
     const std::vector<std::string> formats = file.words("output.formats");
     record.netcdf = std::find(formats.begin(), formats.end(), "netcdf") != formats.end();
     record.given = given_keys(file);
@@ -173,6 +179,22 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     record.warnings = scene.log;
     return record;
 }
+
+double released_later(const RunRecord& record) {
+    double sum = 0.0;
+    for (const LateEntry& late : record.extras.late)
+        if (late.entered) sum += late.volume;
+    return sum;
+}
+
+double taken_again(const RunRecord& record) {
+    const Status::Bed& bed = record.summary.last.bed;
+    constexpr double kRoundOff = 1e-12;
+    const double again = bed.eroded - record.taken_of_bed;
+    return bed.deposited > 0.0 && again > kRoundOff * bed.eroded ? again : 0.0;
+}
+
+double lies_behind(const RunRecord& record) { return record.summary.last.bed.deposited - taken_again(record); }
 
 /// "1.2 % of the mass still moves, the fastest at 3.4 m/s".
 std::string motion_text(const RunSummary& s) {
@@ -347,6 +369,7 @@ std::string run_json(const RunRecord& record) {
                  {"grid", {{"nx", record.grid.nx}, {"ny", record.grid.ny}, {"cell", record.grid.cell}}},
                  {"particles", {{"initial", record.particles}, {"final", s.last.particles}}},
                  {"release_volume", record.release_volume},
+                 {"release_volume_later", released_later(record)},
                  {"wall_seconds", time_json(s)},
                  {"particle_steps", s.particle_steps},
                  {"particle_steps_per_second", per_second},
@@ -372,7 +395,7 @@ std::string run_json(const RunRecord& record) {
     }
     if (record.extras.inflow) json["budgets"]["inflow"] = inflow_json(*record.extras.inflow);
     if (!record.extras.late.empty()) json["late_releases"] = late_json(record.extras.late);
-    if (s.last.bed.initial > 0.0 || s.last.bed.deposited > 0.0) json["budgets"]["bed"] = bed_json(s);
+    if (s.last.bed.initial > 0.0 || s.last.bed.deposited > 0.0) json["budgets"]["bed"] = bed_json(record);
     if (!record.friction.empty()) json["friction"] = friction_json(record.friction);
     if (record.friction_of_part) json["friction_of_part"] = true;
     if (!record.sections.empty()) json["sections"] = sections_json(record.sections);

@@ -12,6 +12,7 @@
 #include "run/folder/barrier_hits.h"
 #include "run/folder/barrier_results.h"
 #include "run/folder/checkpoint.h"
+#include "run/folder/release_results.h"
 #include "run/run_loop.h"
 #include "scene/scene.h"
 #include "scene/survey_files.h"
@@ -51,13 +52,16 @@ struct RunRecord {
     double footprint_area = 0.0;                                     ///< ever deeper than footprint_depth [m2]
     double peak_depth = 0.0, peak_speed = 0.0, peak_pressure = 0.0;  ///< of the rasters [m], [m/s], [Pa]
     double peak_dynamic_pressure = 0.0;                              ///< [Pa]
-    double final_depth = 0.0;                                        ///< deepest at the end [m]
-    std::optional<Vec2> start;           ///< of the path of runouts, where nothing lay at the start
+    double final_depth = 0.0;       ///< deepest at the end, with what has become bed [m]
+    double final_flow_depth = 0.0;  ///< deepest flow at the end [m]
+    double taken_of_bed = 0.0;      ///< of that which was there at the start, not of what the flow had left behind [kg]
+    std::optional<Vec2> start;      ///< of the path of runouts, where nothing lay at the start
     double flow_width = Raster::nodata;  ///< median over the footprint's length, compare/flow_width.h [m]
     int threads = 1;
     std::optional<Comparison> comparison;  ///< with the survey, when the case gives one
     SurveyFiles survey_files;
     std::vector<BarrierSource> barrier_sources;
+    std::vector<ReleaseSource> release_sources;
     RunSummary summary;
     std::vector<DrawnFigure> figures;
     std::vector<InsituTally> insitu;
@@ -80,6 +84,13 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file);
 
 /// "the end of the simulated time", "interrupted", ... for people.
 std::string reason_text(const RunRecord& record);
+
+/// Volume of the releases that entered after the start [m^3].
+double released_later(const RunRecord& record);
+
+/// What the flow took again of what it had left behind, and what of that lies there at the end [kg].
+double taken_again(const RunRecord& record);
+double lies_behind(const RunRecord& record);
 
 /// run.json as text: contract in the README; numbers in SI, with all their digits.
 std::string run_json(const RunRecord& record);

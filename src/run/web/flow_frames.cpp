@@ -14,12 +14,20 @@ public:
     void observe(const Frame& frame) override {
         const Field *depth = frame.node("depth"), *speed = frame.node("speed");
         if (depth == nullptr) return;
-        into_.add(frame.number, frame.status.time, {frame.grid, depth->data, speed ? speed->data : nullptr});
+        const double* shown = depth->data;
+        if (const Field* bed = frame.node("deposited_depth")) {  // what has become bed would vanish from the film
+            with_bed_.resize(static_cast<std::size_t>(depth->count));
+            for (std::size_t n = 0; n < with_bed_.size(); ++n)
+                with_bed_[n] = depth->data[n] + (bed->data[n] > 0.0 ? bed->data[n] : 0.0);
+            shown = with_bed_.data();
+        }
+        into_.add(frame.number, frame.status.time, {frame.grid, shown, speed ? speed->data : nullptr});
     }
     void serialize(Archive& archive) override { into_.serialize(archive); }
 
 private:
     FlowFrames& into_;
+    std::vector<double> with_bed_;  ///< depth and deposit [m]
 };
 
 }  // namespace

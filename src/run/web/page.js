@@ -111,7 +111,7 @@ function tell() {
     if (hasSpeed()) rows.push(["Speed", value(state.flow && state.flow.speed, "m/s")]);
   } else if (state.drapes[state.show]) {
     const scale = scaleShown(), found = nearestValue(state.drapes[state.show], x, y);
-    rows.push([capital(scale.label), isNaN(found) ? (state.show === "final_depth" ? `at most ${written(data.footprint_depth)} m` : "not reached") : `${written(found)} ${scale.unit}`]);
+    rows.push([capital(scale.label), isNaN(found) ? (["final_depth", "lying_depth"].includes(state.show) ? `at most ${written(data.footprint_depth)} m` : "not reached") : `${written(found)} ${scale.unit}`]);
   }
   get("under").replaceChildren(...rows.flatMap(([name, text], k) => {
     const label = document.createElement("i"), number = document.createElement("b");

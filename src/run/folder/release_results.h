@@ -1,0 +1,36 @@
+#pragma once
+// The releases of a run as polygons for a GIS.
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/gdal_features.h"
+#include "observe/frame.h"
+
+namespace frana {
+
+class CaseFile;
+
+/// A [[release]] of the case.
+struct ReleaseSource {
+    Index table = 0;      ///< its number
+    std::string outline;  ///< as GDAL opens it, with its layer; empty: a mask, a raster or the whole terrain
+    bool late = false;    ///< it enters after the start
+};
+
+/// All of the case, in its order.
+std::vector<ReleaseSource> release_sources(const CaseFile& file);
+
+/// Layer "release": the polygons of the case with `release`, the number of the table from 0, `area_m2`, `entered_s`, empty where it did
+/// not enter, and `volume_m3` of the whole table where it is known: of what enters later (`late`), and of a single
+/// release at the start (`at_start` [m3]). UserError when a file cannot be read.
+ShapeLayer release_layer(const std::vector<ReleaseSource>& sources, const std::vector<LateEntry>& late, double at_start,
+                         const std::string& crs_wkt);
+
+/// 1 on the pixels of `like` whose middle lies in the outline of a release that entered after the start, else 0; nothing where
+/// none did. Those without an outline are not known. UserError when a file cannot be read.
+std::optional<Raster> released_later_on(const std::vector<ReleaseSource>& sources, const std::vector<LateEntry>& late,
+                                        const Raster& like);
+
+}  // namespace frana
