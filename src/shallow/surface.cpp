@@ -378,14 +378,19 @@ void depth_of_four(Flow& flow, const DepthRequest& request, Index k, Index i, In
 
 /// THEORY, section 6: the depth that the bed law is given at a margin. Shape functions spread a front over nodes beyond it,
 /// whose depth is a small part of the front's. Taken for the flow's own, it would give drag that grows as depth falls a hold
-/// on the front that it has not: the flow behind would pile up on it. So the depth is that of the mass around, if that is
-/// more.
-double depth_at_margin(const double* h, Index up) {
-    double sum = 0.0, square = 0.0;
+/// on the front that it has not: the flow behind would pile up on it. So the depth is that of the mass behind, if that is
+/// more: of nodes that the node moves away from, by the cosine of twice the angle. Beside and behind a flow its edge is thin.
+double depth_at_margin(const double* h, Index up, const Pair& velocity) {
+    const double speed2 = velocity.x * velocity.x + velocity.y * velocity.y;
+    double sum = *h, square = *h * *h;
     for (Index dj = -1; dj <= 1; ++dj)
         for (Index di = -1; di <= 1; ++di) {
-            const double near = h[dj * up + di];
-            sum += near, square += near * near;
+            const auto x = static_cast<double>(di), y = static_cast<double>(dj);
+            const double away = -(velocity.x * x + velocity.y * y), distance2 = x * x + y * y;
+            const double weight = 2.0 * away * away - speed2 * distance2;  // times both squares
+            if (!(away > 0.0) || !(weight > 0.0)) continue;
+            const double near = h[dj * up + di], share = weight / (speed2 * distance2);
+            sum += share * near, square += share * near * near;
         }
     return square > *h * sum ? square / sum : *h;
 }
@@ -448,7 +453,8 @@ void mark_margin(Flow& flow) {
                 std::uint8_t flag = flags[i] & (kWet | kMoving);
                 if (!(inner & bit)) {
                     flag |= kMargin;
-                    if (flow.scheme.margin) flow.nodes.law_depth[first + i] = depth_at_margin(depth + i, up);
+                    if (flow.scheme.margin)
+                        flow.nodes.law_depth[first + i] = depth_at_margin(depth + i, up, flow.nodes.before[first + i]);
                 }
                 any |= flag;
                 if (a[2] & bit) flag |= kWideX;
