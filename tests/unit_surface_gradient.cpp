@@ -90,10 +90,11 @@ TEST_CASE("Friction sees a front as deep as the flow behind it, and other edges 
             CAPTURE(i, j, h);
             CHECK(seen >= h);
             CHECK(seen <= deepest);
-            const bool front = i > 17 && j > 14 && j<26, beside = i> 8 && i < 16;
+            const bool front = i > 17 && j > 14 && j < 26;
+            const bool lateral = i > 8 && i < 16;
             if (front) thin = std::min(thin, h), least = std::min(least, seen);
             if (i < 4) CHECK(seen == h);
-            if (beside) CHECK(seen <= 1.02 * h);  // what lies behind is as thin, but for noise of the lattice
+            if (lateral) CHECK(seen <= 1.02 * h);  // what lies behind is as thin, but for noise of the lattice
         }
     // Half a cell beyond the edge a node has an eighth of the depth, and the one behind it seven: of the mass of both that is
     // 25 / 32 of the depth. Sub-points spread a little more.
