@@ -1,6 +1,8 @@
 // Barriers: distances, faces, corners, ways that end on them, walls along a line.
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <map>
 
 #include "base/error.h"
 #include "catch.h"
@@ -119,6 +121,33 @@ TEST_CASE("In corners of a barrier of any width no image stands where material m
             CHECK(contact(corner[0], mirror.place).distance < 1e-9);
         }
     }
+}
+
+TEST_CASE("Mirror particles of a lattice around a box fill it once, beside its edges and corners too", "[solid]") {
+    constexpr double kCell = 1.0, kPart = 0.5, kDeep = 1.5;
+    const std::vector<Surface> box = {Surface::barrier(Prism(rectangle(0, 0, 8, 8), 6.0))};
+    std::map<std::array<long, 3>, double> filled;
+    const auto key = [&](const Vec3& x) {
+        return std::array{std::lround(4.0 * x.x()), std::lround(4.0 * x.y()), std::lround(4.0 * x.z())};
+    };
+    const auto for_each_place = [&](double low, double high, const auto& take) {
+        for (double z = low + 0.5 * kPart; z < high; z += kPart)
+            for (double y = low + 0.5 * kPart; y < 4.0; y += kPart)
+                for (double x = low + 0.5 * kPart; x < 4.0; x += kPart) take(Vec3(x, y, z));
+    };
+    for_each_place(-4.0, 10.0, [&](const Vec3& x) {
+        if (box[0].inside(x)) return;
+        for (const MirrorParticle& mirror : MirrorParticles(box, 1, x, kCell))
+            filled[key(mirror.place)] += mirror.share;
+    });
+    int deep = 0;
+    for_each_place(0.0, 6.0, [&](const Vec3& x) {
+        if (std::min({x.x(), x.y(), 6.0 - x.z()}) > kDeep) return;
+        CAPTURE(x.x(), x.y(), x.z());
+        REQUIRE(filled[key(x)] == Approx(1.0).epsilon(1e-12));  // without shares up to 3
+        ++deep;
+    });
+    CHECK(deep > 500);
 }
 
 TEST_CASE("No way that ends inside or beyond a barrier misses its faces, seams included", "[solid]") {

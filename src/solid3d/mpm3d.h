@@ -134,7 +134,8 @@ struct SolidBody {
 
     std::vector<Box3d> boxes;  ///< of the step: nodes that the points of each particle tile touch
 
-    LazyArray<Node> nodes, real;  ///< real: without mirror particles, near surfaces
+    LazyArray<Node> nodes, real;   ///< real: without mirror particles, near surfaces
+    LazyArray<Node> mirror_force;  ///< of the step, near barriers: impulse of their mirror particles' stress [kg m/s]
     /// Material beside the points, which gives to the nodes like them. `real` has it too.
     struct Ghosts {
         GhostParticles material;

@@ -270,6 +270,75 @@ bool Prism::enters(const Vec3& from, const Vec3& to, Entry& entry) const {
     return entry.share <= 1.0;
 }
 
+/// Whether it is a face that is met, and not its edge.
+bool Prism::is_face(const Contact& contact) const {
+    if (contact.face == top_face()) return true;
+    return contact.normal.head<2>().dot(edges_[static_cast<std::size_t>(contact.face)].normal) > 1.0 - kSeam;
+}
+
+/// Faces that a node's shape function lies on, ends that stand in apart: it reaches 3/2 cells along each axis.
+int Prism::reached(const Vec3& x, double cell, Contact* list) const {
+    const Vec2 p = x.head<2>();
+    const double half = 0.5 * cell, height = x.z() - top_at(p);
+    int count = 0;
+    bool near = within(p);
+    for (std::size_t k = 0; k < edges_.size(); ++k) {
+        const Edge& edge = edges_[k];
+        const double d = edge.normal.dot(p - edge.from), t = edge.along.dot(p - edge.from);
+        const double over = mirror_reach(level(edge.along)) * half;
+        if (std::abs(d) > mirror_reach(level(edge.normal)) * half) continue;
+        if (t < (edge.starts_in ? 0.0 : -over) || t > edge.length + (edge.ends_in ? 0.0 : over)) continue;
+        near = true;
+        if (height < 3.0 * half) keep_nearest(list, count, {d, level(edge.normal), static_cast<int>(k)});
+    }
+    const Contact top = top_contact(x);
+    if (near && std::abs(top.distance) <= mirror_reach(top.normal) * half) keep_nearest(list, count, top);
+    return count;
+}
+
+MetFaces Prism::faces_at_edge(const Vec3& x, double cell, Contact* list, int count) const {
+    if (count == 0) return {0, 0};
+    Contact others[kMostContacts];
+    const int most = reached(x, cell, others);
+    const Vec3 first = list[0].normal;
+    const auto listed = [&](int face) {
+        return std::any_of(list, list + count, [&](const Contact& c) { return c.face == face && is_face(c); });
+    };
+    int kept = 0;
+    for (int n = 0; n < most; ++n)
+        if (!listed(others[n].face) && others[n].normal.dot(first) > kOpposite) others[kept++] = others[n];
+    if (kept > 0)
+        count =
+            static_cast<int>(std::remove_if(list, list + count, [&](const Contact& c) { return !is_face(c); }) - list);
+    const int faced = count;
+    for (int n = 0; n < kept && count < kMostContacts; ++n)
+        if (bends_from(list, count, others[n].normal)) list[count++] = others[n];
+    return {faced, count};
+}
+
+double Prism::mirror_share(const Contact& contact, const Vec3& place, double blend) const {
+    if (!is_face(contact)) return 0.0;
+    const bool at_top = contact.face == top_face();
+    const double top = std::max(0.0, -top_contact(place).distance);
+    const auto for_each_other = [&](const auto& take) {
+        if (!at_top) take(top);
+        for (std::size_t k = 0; k < edges_.size(); ++k) {
+            const Edge& edge = edges_[k];
+            if (static_cast<int>(k) == contact.face || contact.normal.head<2>().dot(edge.normal) <= kOpposite) continue;
+            const Vec2 from_start = place.head<2>() - edge.from;
+            const double t = edge.along.dot(from_start), depth = -edge.normal.dot(from_start);
+            if (t >= 0.0 && t <= edge.length && depth >= 0.0) take(depth);
+        }
+    };
+    double nearest = contact.distance;
+    for_each_other([&](double depth) { nearest = std::min(nearest, depth); });
+    const auto weight = [&](double depth) { return std::max(0.0, blend - (depth - nearest)); };
+    const double own = weight(contact.distance);
+    double sum = own;  // the nearest of all has the weight `blend`
+    for_each_other([&](double depth) { sum += weight(depth); });
+    return own / sum;
+}
+
 double Prism::thickness(const Vec3& from, const Vec3& way) const {
     double least = kInfinity;
     for (const Edge& edge : edges_) {

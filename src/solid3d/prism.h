@@ -8,6 +8,11 @@
 
 namespace frana {
 
+/// Faces that a node meets: first those that it is before, or behind first, then others.
+struct MetFaces {
+    int faced, all;
+};
+
 /// The area of polygons that do not overlap one another, from their top downwards. Faces are numbered: the
 /// sides in the order of the polygons' edges, parts and rings in turn, and the top behind the last of them.
 class Prism {
@@ -22,9 +27,17 @@ public:
     /// in both of its planes, which a point inside sees as well. Where the solid is so thin that material of
     /// both sides shares nodes (3 (|n_x| + |n_y|) cells) a place inside meets both sides and the top.
     int contacts(const Vec3& x, double cell, Contact* list) const;
+    /// Beside an edge that stands out a node carries pressure of both faces: puts those that are not among the `count` of
+    /// `list` behind them, in place of the one direction to the edge.
+    MetFaces faces_at_edge(const Vec3& x, double cell, Contact* list, int count) const;
     bool inside(const Vec3& x) const { return x.z() < top_at(x.head<2>()) && within(x.head<2>()); }
     /// Whether the way between two places, the first outside, goes into the solid.
     bool enters(const Vec3& from, const Vec3& to, Entry& entry) const;
+    /// Of the mirror particle that a point before `contact` shows at `place`, in the solid: the share that is this face's.
+    /// Beside an edge that stands out the faces' mirror particles would fill the solid twice and three times, and push
+    /// material away from the edge. Each face has what is nearest to it, and halfway between two of them both blend over
+    /// `blend` [m]. An edge itself shows none.
+    double mirror_share(const Contact& contact, const Vec3& place, double blend) const;
     /// Length of the solid from a place on its surface into the unit direction `way` [m].
     double thickness(const Vec3& from, const Vec3& way) const;
 
@@ -53,6 +66,8 @@ private:
     Contact lifted(const Vec3& x, double distance, const Vec2& normal, int face) const;
     int before_it(const Vec3& x, double reach, Contact* list) const;
     int within_it(const Vec3& x, double cell, Contact* list) const;
+    bool is_face(const Contact& contact) const;
+    int reached(const Vec3& x, double cell, Contact* list) const;
     bool sees(const Vec3& x, const Contact& contact, int nearest) const;
 
     std::vector<Edge> edges_;

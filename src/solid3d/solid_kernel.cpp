@@ -86,8 +86,9 @@ public:
     /// (mpm3d.cpp). Those further off, of points deep in a corner or behind a surface, reach no node that material touches.
     void scatter_mirrors(SolidBody& body, double dt) const override {
         for_each_work_tile(body.active, [&](Index n, Index tile) {
-            if (body.near_nodes[static_cast<std::size_t>(n)] != 0)
-                std::copy_n(&body.nodes[tile * kTileNodes], kTileNodes, &body.real[tile * kTileNodes]);
+            const SurfaceSet near = body.near_nodes[static_cast<std::size_t>(n)];
+            if (near != 0) std::copy_n(&body.nodes[tile * kTileNodes], kTileNodes, &body.real[tile * kTileNodes]);
+            if (near & body.barriers) std::fill_n(&body.mirror_force[tile * kTileNodes], kTileNodes, SolidBody::Node{});
         });
         const double h = body.grid.cell();
         const Vec3& origin = body.grid.geometry().origin;
@@ -103,7 +104,7 @@ public:
                     const Vec3 shift = (place - x).cwiseAbs();
                     const bool far = std::max(shift.x(), shift.y()) > sideways || shift.z() > kFarthestMirror;
                     if (far || !seen(body, place)) continue;
-                    if (mirror.cuts > 0) {
+                    if (mirror.of_barrier) {
                         show_before_cuts(body, p, mirror, place, dt);
                         continue;
                     }
@@ -163,7 +164,8 @@ public:
                 if constexpr (Law::kAverages) mean_j = (flip ? body.flip_sums[k].m : body.mass_j[k]) / real;
                 Vec3 v = Vec3(node.x, node.y, node.z) / node.m;
                 if (near)
-                    v = meet(body, near, place_of(body.grid, tile, k - first), body.real[k], v, had2(body, k), given);
+                    v = meet(body, near, k, place_of(body.grid, tile, k - first), body.real[k], v, had2(body, k),
+                             given);
                 node = {mean_j, v[0], v[1], v[2]};
                 if constexpr (flip) {
                     SolidBody::Node& had = body.flip_sums[k];
@@ -231,9 +233,9 @@ private:
     /// The motion and the stress that a mirror particle shows; a point and it push each other alike.
     static Point mirrored(const Point& p, const MirrorParticle& mirror) {
         Point other;
-        other.mass = p.mass, other.j = p.j;
+        other.mass = mirror.share * p.mass, other.j = p.j;
         other.gradient = mirror.motion * mirror.without_shear(p.gradient) * mirror.turn.transpose();
-        other.stress = mirror.motion * p.stress * mirror.turn.transpose();
+        other.stress = mirror.share * (mirror.motion * p.stress * mirror.turn.transpose());
         return other;
     }
 
@@ -250,13 +252,16 @@ private:
             const Vec3 d(s.d[0][i], s.d[1][j], s.d[2][k]);
             if (!mirror.shows_at(origin + body.grid.cell() * place + d)) continue;
             const double w = s.w[0][i] * s.w[1][j] * s.w[2][k];
-            SolidBody::Node* const node = body.nodes.data() + s.place[0][i] + s.place[1][j] + s.place[2][k];
+            const Index at = s.place[0][i] + s.place[1][j] + s.place[2][k];
+            const Double4 force = (s.slope[0][i] * s.w[1][j] * s.w[2][k]) * contribution.force[0] +
+                                  (s.w[0][i] * s.slope[1][j] * s.w[2][k]) * contribution.force[1] +
+                                  (s.w[0][i] * s.w[1][j] * s.slope[2][k]) * contribution.force[2];
+            SolidBody::Node *const node = &body.nodes[at], *const pressure = &body.mirror_force[at];
             store(node, load(node) +
                             w * (contribution.base + contribution.affine[0] * d[0] + contribution.affine[1] * d[1] +
                                  contribution.affine[2] * d[2]) +
-                            (s.slope[0][i] * s.w[1][j] * s.w[2][k]) * contribution.force[0] +
-                            (s.w[0][i] * s.slope[1][j] * s.w[2][k]) * contribution.force[1] +
-                            (s.w[0][i] * s.w[1][j] * s.slope[2][k]) * contribution.force[2]);
+                            force);
+            store(pressure, load(pressure) + force);
         }
     }
 
@@ -278,9 +283,10 @@ private:
             for (const MirrorParticle& mirror : MirrorParticles(body.surfaces, ghosts.near[p], x, h)) {
                 const Vec3 shown = (mirror.place - origin) / h;
                 if ((shown - place).cwiseAbs().maxCoeff() > kFarthestMirror || !felt(body, shown)) continue;
-                ghosts.mirrors.push_back({shown, seeds.mass[p], mirror.motion * momentum,
-                                          mirror.motion * mirror.without_shear(motion) * mirror.turn.transpose(),
-                                          mirror.motion * force * mirror.turn.transpose(), mirror});
+                ghosts.mirrors.push_back(
+                    {shown, mirror.share * seeds.mass[p], mirror.share * (mirror.motion * momentum),
+                     mirror.share * (mirror.motion * mirror.without_shear(motion) * mirror.turn.transpose()),
+                     mirror.share * (mirror.motion * force * mirror.turn.transpose()), mirror});
             }
         }
     }
@@ -322,8 +328,13 @@ private:
             const double w = s.w[0][i] * s.w[1][j] * s.w[2][k];
             const Vec3 slope(s.slope[0][i] * s.w[1][j] * s.w[2][k], s.w[0][i] * s.slope[1][j] * s.w[2][k],
                              s.w[0][i] * s.w[1][j] * s.slope[2][k]);
-            SolidBody::Node& node = body.nodes[s.place[0][i] + s.place[1][j] + s.place[2][k]];
-            const Vec3 given = w * (shown.momentum + shown.affine * d) + shown.force * slope;
+            const Index at = s.place[0][i] + s.place[1][j] + s.place[2][k];
+            SolidBody::Node& node = body.nodes[at];
+            const Vec3 force = shown.force * slope, given = w * (shown.momentum + shown.affine * d) + force;
+            if (shown.mirror.of_barrier) {
+                SolidBody::Node& pressure = body.mirror_force[at];
+                pressure.x += force[0], pressure.y += force[1], pressure.z += force[2];
+            }
             node.m += w * shown.mass, node.x += given[0], node.y += given[1], node.z += given[2];
         }
     }
@@ -377,12 +388,13 @@ private:
 
     /// Surfaces that mirror particles of points at `x` can reach, with the speeds they ask for: what points and mirror
     /// particles together have along the normal (`mixed`), and behind a surface none into it.
-    static int touched(const SolidBody& body, SurfaceSet near, const Vec3& x, const Vec3& mixed, Touch* list) {
+    static int touched(const SolidBody& body, SurfaceSet near, Index node, const Vec3& x, const Vec3& mixed,
+                       Touch* list) {
         int count = 0;
         for (; near != 0 && count < kMostTouched; near &= near - 1) {
             const int s = __builtin_ctz(near);
             if (body.barriers >> s & 1) {
-                count = touched_barrier(body, s, x, mixed, list, count);
+                count = touched_barrier(body, s, node, x, mixed, list, count);
                 continue;
             }
             const Contact c = contact(body.surfaces[static_cast<std::size_t>(s)], x);
@@ -394,19 +406,30 @@ private:
     }
 
     /// The same for the faces of a barrier. In one so thin that material of both sides shares a node, neither
-    /// side knows what the other's mirror particles ask for: nothing goes into either.
-    [[gnu::noinline]] static int touched_barrier(const SolidBody& body, int s, const Vec3& x, const Vec3& mixed,
-                                                 Touch* list, int count) {
+    /// side knows what the other's mirror particles ask for: nothing goes into either. Beside an edge a node carries some
+    /// of the pressure of faces that it is not before. They ask for no more than the impulse of their mirror particles'
+    /// pressure: with their motion too they would brake what passes the edge.
+    [[gnu::noinline]] static int touched_barrier(const SolidBody& body, int s, Index node, const Vec3& x,
+                                                 const Vec3& mixed, Touch* list, int count) {
         Contact found[kMostContacts];
-        const int faces = contacts(body.surfaces[static_cast<std::size_t>(s)], x, body.grid.cell(), found);
+        const Surface& barrier = body.surfaces[static_cast<std::size_t>(s)];
+        const int faces = contacts(barrier, x, body.grid.cell(), found);
         bool thin = false;
         for (int n = 1; n < faces; ++n) thin |= found[0].normal.dot(found[n].normal) < kOpposite;
         thin = thin && found[0].distance <= 0.0;
-        for (int n = 0; n < faces && count < kMostTouched; ++n) {
+        MetFaces met{faces, faces};
+        if (!thin && barrier.kind == Surface::Kind::prism)
+            met = barrier.prism->faces_at_edge(x, body.grid.cell(), found, faces);
+        const SolidBody::Node &real = body.real[node], &pressure = body.mirror_force[node];
+        const Vec3 pressed = Vec3(real.x + pressure.x, real.y + pressure.y, real.z + pressure.z) / real.m;
+        for (int n = 0; n < met.all && count < kMostTouched; ++n) {
             const Contact& c = found[n];
             if (c.distance > 0.5 * mirror_reach(c.normal) * body.grid.cell()) continue;
             const double asked = thin ? 0.0 : mixed.dot(c.normal);
-            list[count++] = {s, c, c.distance <= 0.0 ? std::max(asked, 0.0) : asked};
+            const double least = n >= met.faced      ? std::min(asked, pressed.dot(c.normal))
+                                 : c.distance <= 0.0 ? std::max(asked, 0.0)
+                                                     : asked;
+            list[count++] = {s, c, least};
         }
         return count;
     }
@@ -497,10 +520,10 @@ private:
     /// from it only what it has along their normal (along themselves mirror particles would brake material that
     /// shears), and only as a push: surfaces never pull. Friction follows from the push. Records each surface's
     /// impulse on the real material.
-    static Vec3 meet(const SolidBody& body, SurfaceSet near, const Vec3& x, const SolidBody::Node& real,
+    static Vec3 meet(const SolidBody& body, SurfaceSet near, Index node, const Vec3& x, const SolidBody::Node& real,
                      const Vec3& mixed, double had2, const Given& given) {
         Touch list[kMostTouched];
-        const int count = touched(body, near, x, mixed, list);
+        const int count = touched(body, near, node, x, mixed, list);
         Vec3 v = Vec3(real.x, real.y, real.z) / real.m;
         const Vec3 came = v;
         const double most2 = std::max(came.squaredNorm(), had2);
@@ -573,7 +596,7 @@ private:
             Vec3 v = shared;
             if (near) {
                 const Vec3 mixed = Vec3(node.x, node.y, node.z) / node.m;
-                v = meet_in_part(body, near, place_of(body.grid, tile, k - tile * kTileNodes), both, mixed,
+                v = meet_in_part(body, near, k, place_of(body.grid, tile, k - tile * kTileNodes), both, mixed,
                                  own.m / both.m, given);
             }
             const Vec3 impulse = own.m * shared - Vec3(own.x, own.y, own.z);
@@ -591,13 +614,13 @@ private:
     }
 
     /// The same as meet, of which `share` is recorded.
-    static Vec3 meet_in_part(const SolidBody& body, SurfaceSet near, const Vec3& x, const SolidBody::Node& real,
-                             const Vec3& mixed, double share, const Given& given) {
+    static Vec3 meet_in_part(const SolidBody& body, SurfaceSet near, Index node, const Vec3& x,
+                             const SolidBody::Node& real, const Vec3& mixed, double share, const Given& given) {
         std::array<Vec3, kMostSurfaces> impulse;
         impulse.fill(Vec3::Zero());
         SurfaceWork work{};
         const std::size_t before = given.faces ? given.faces->size() : 0;
-        Vec3 v = meet(body, near, x, real, mixed, 0.0, {impulse.data(), given.faces, &work});
+        Vec3 v = meet(body, near, node, x, real, mixed, 0.0, {impulse.data(), given.faces, &work});
         for (std::size_t s = 0; s < body.surfaces.size(); ++s) given.impulse[s] += share * impulse[s];
         given.work->contact_work += share * work.contact_work, given.work->friction += share * work.friction;
         if (given.faces)

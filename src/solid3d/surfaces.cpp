@@ -163,13 +163,39 @@ MirrorParticles::MirrorParticles(const std::vector<Surface>& surfaces, SurfaceSe
     if (count > 0) reflect(list, count, x);
 }
 
+namespace {
+
+/// Of the mirror particle that a point before `contact` shows at `place` in a shape: the share of Prism::mirror_share. A
+/// field of distances tells one face only, the nearest: where it is another one than the point's, both blend. Faces that
+/// lie 30 degrees apart or less are one that bends; opposite ones share nothing.
+double mirror_share(const DistanceField& shape, const Contact& contact, const Vec3& place, double blend) {
+    constexpr double kSameFace = 0.866;
+    const Contact nearest = shape.contact(place);
+    const double turned = nearest.normal.dot(contact.normal);
+    if (turned > kSameFace || turned <= kOpposite) return 1.0;
+    const double own = std::clamp(blend - (contact.distance + nearest.distance), 0.0, blend);
+    return own / (own + blend);
+}
+
+/// Of a barrier.
+double mirror_share(const Surface& barrier, const Contact& contact, const Vec3& x, double cell) {
+    constexpr double kBlend = 0.5;  // [cells], about the distance of points
+    const Vec3 place = x - 2.0 * contact.distance * contact.normal;
+    return barrier.kind == Surface::Kind::prism ? barrier.prism->mirror_share(contact, place, kBlend * cell)
+                                                : mirror_share(*barrier.shape, contact, place, kBlend * cell);
+}
+
+}  // namespace
+
 int MirrorParticles::near_barrier(const Surface& surface, const Vec3& x, double cell, Near* list, int count) {
     Contact found[kMostContacts];
     const int faces = contacts(surface, x, cell, found);
     for (const Contact* c = found; c < found + faces && count < kMostNear; ++c) {
         if (c->distance < 0.0 || c->distance >= mirror_reach(c->normal) * cell) continue;
+        const double share = mirror_share(surface, *c, x, cell);
+        if (!(share > 0.0)) continue;
         const double thick = thickness(surface, x - c->distance * c->normal, -c->normal);
-        list[count++] = {*c, surface.hold == Hold::stuck, thick};
+        list[count++] = {*c, surface.hold == Hold::stuck, thick, share, true};
     }
     return count;
 }
@@ -205,7 +231,8 @@ void MirrorParticles::reflect(const Near* near, int count, const Vec3& x) {
         mirror.motion = near[n].stuck ? Mat3(-Mat3::Identity()) : mirror.turn;
         mirror.held_normal = near[n].bends() ? normal : Vec3(Vec3::Zero());
         mirror.held_above = near[n].bends() ? near[n].contact.distance : 0.0;
-        mirror.held = near[n].stuck, mirror.slides = 0, mirror.cuts = 0;
+        mirror.held = near[n].stuck, mirror.of_barrier = near[n].of_barrier, mirror.share = near[n].share;
+        mirror.slides = 0, mirror.cuts = 0;
         if (corner(near, count, n)) slide_along(mirror, near[n], Mat3::Identity());
         cut_off(mirror, near[n], x);
         if (n + 1 < count) reflect_in_others(near, count, n, x, mirror, 0);
@@ -238,6 +265,8 @@ void MirrorParticles::reflect(const Near* near, int count, const MirrorParticle&
                               Vec3::Zero(),
                               0.0,
                               from.held || near[n].stuck,
+                              from.of_barrier || near[n].of_barrier,
+                              from.share * near[n].share,
                               from.slides,
                               {from.slide[0], from.slide[1], from.slide[2]},
                               from.cuts,

@@ -86,6 +86,8 @@ struct MirrorParticle {
     Vec3 held_normal;
     double held_above;  ///< [m]
     bool held;          ///< in a stuck surface, or more
+    bool of_barrier;    ///< of a barrier, or of more surfaces with a barrier among them
+    double share;       ///< of the point's mass and stress that it has: less than 1 beside edges of barriers
     /// In corners of free surfaces: normals of those that it is a mirror particle in, as its point sees them (see
     /// without_shear).
     int slides;
@@ -128,7 +130,9 @@ private:
     struct Near {
         Contact contact;
         bool stuck;
-        double thick;  ///< [m], without end but for barriers
+        double thick;        ///< [m], without end but for barriers
+        double share = 1.0;  ///< MirrorParticle::share
+        bool of_barrier = false;
         bool bends() const { return stuck && thick == std::numeric_limits<double>::infinity(); }
     };
     static constexpr int kMostNear = 4, kMost = 14;

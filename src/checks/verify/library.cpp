@@ -25,6 +25,7 @@ const std::vector<Problem>& library() {
                                  conversion_problems,
                                  tank_problems,
                                  bore_problems,
+                                 dam_obstacle_problems,
                                  rest_problems,
                                  body_problems,
                                  column_problems,

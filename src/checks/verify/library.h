@@ -47,6 +47,7 @@ std::vector<Problem> column_problems();           // problems_column.cpp
 std::vector<Problem> structured_problems();       // problems_structured.cpp
 std::vector<Problem> structured_case_problems();  // problems_structured_cases.cpp
 std::vector<Problem> strained_column_problems();  // problems_strained_column.cpp
+std::vector<Problem> dam_obstacle_problems();     // problems_dam_obstacle.cpp
 std::vector<Problem> mud_problems();              // problems_mud.cpp
 std::vector<Problem> erosion_problems();          // problems_erosion.cpp
 std::vector<Problem> bed_wave_problems();         // problems_bed_waves.cpp

@@ -1,6 +1,6 @@
 #pragma once
 // A structured column that is strained by itself, without a grid, and closed forms of its stress. Tests use it too.
-#include "law/structured_law.h"
+#include "structured/structured_flow.h"
 
 namespace frana::verify {
 
