@@ -9,6 +9,7 @@
 #include "checks/verify/exact_dam_break.h"
 #include "checks/verify/library.h"
 #include "checks/verify/water.h"
+#include "water_bits.h"
 
 using namespace frana;
 
@@ -30,16 +31,6 @@ WaterScene down_a_slope() {
     s.sides = {WaterSide::wall, WaterSide::open, WaterSide::wall, WaterSide::open};
     s.friction = {WaterFriction::Law::manning, 0.03};
     return s;
-}
-
-std::vector<double> bits_of(const WaterFlow& flow) {
-    std::vector<double> bits;
-    for (Index j = 0; j < flow.body().grid.ny(); ++j)
-        for (Index i = 0; i < flow.body().grid.nx(); ++i) {
-            const WaterState s = flow.at(i, j);
-            for (const double number : {s.depth, s.u, s.v}) bits.push_back(number);
-        }
-    return bits;
 }
 
 /// A heap of water 8 cells wide that is let go on flat ground.
