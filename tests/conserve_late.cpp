@@ -239,7 +239,7 @@ TEST_CASE("Late releases have the same bits on any number of threads, and when a
     DepthAveraged straight(scene);
     std::vector<MemoryArchive> kept;
     while (straight.status().time < 7.0) {
-        if (straight.status().step % 15 == 0) straight.serialize(kept.emplace_back());
+        if (straight.status().step % 8 == 0) straight.serialize(kept.emplace_back());
         straight.advance(7.0);
     }
     REQUIRE(kept.size() > 4);

@@ -180,7 +180,7 @@ TEST_CASE("A lake whose masses were fitted is not fitted again", "[resume]") {
     scene.still_surface = 1.5;
     const auto depth = [&](double x, double y) { return std::max(0.0, 1.5 - bowl(x, y)); };
     verify::place(scene, depth, verify::Placement::r2, 2);
-    const auto end = check_resume(scene, 1.0, 1, 1);
+    const auto end = check_resume(scene, 2.0, 1, 1);
     REQUIRE(end->mass_fit());
     CHECK(end->remarks().size() == 1);
     DepthAveraged resumed(scene, Start::resumed);

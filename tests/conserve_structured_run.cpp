@@ -234,6 +234,7 @@ TEST_CASE("Grains press on a bend of the bed as the depth-averaged flow does, an
     scene.particles = {};
     fill(scene, [](double x, double y) { return x > 9 && x < 12 && y > 5 && y < 10 ? 0.5 : 0.0; });
     scene.bed_law = bed::Coulomb{0.0};
+    scene.scheme.cfl = 0.5;  // about that of the grains
     struct Shown {
         double most, peaks, now;  // largest peak [Pa]; sums over the nodes [Pa]
     };

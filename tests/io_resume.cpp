@@ -155,7 +155,7 @@ TEST_CASE("what is no state of this case is refused with the reason, and the fol
     CHECK_THAT(none.err, Contains("out/checkpoint.h5: not found; expected the state that a run keeps there; run "
                                   "without --resume to start at the beginning"));
     CHECK_FALSE(fs::exists(folder.out()));
-    REQUIRE(folder.run("--until 1").code == 0);
+    REQUIRE(folder.run("--until 3").code == 0);
     const auto before = files_of(folder.out());
     const std::string report = text_of(folder.out() / "report.md");
     std::string arguments = "--resume", sentence;
@@ -195,7 +195,7 @@ TEST_CASE("what is no state of this case is refused with the reason, and the fol
     SECTION("an earlier end") {
         // The state is that of the last whole step before the end.
         arguments += " --until 0.01";
-        sentence = "--until: found 0.01 s; expected at least the 0.";
+        sentence = "--until: found 0.01 s; expected at least the 1.";
     }
     const Outcome refused = folder.run(arguments);
     CHECK(refused.code == 2);

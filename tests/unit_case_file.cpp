@@ -46,7 +46,7 @@ TEST_CASE("The least case needs a DEM, a release with depth and an end, and the 
     CHECK(file.count("release") == 1);
     CHECK(file.number("release.0.depth") == 1.5);
     CHECK(file.word("release.0.thickness") == "vertical");
-    CHECK(file.number("scheme.cfl") == 0.5);
+    CHECK(file.number("scheme.cfl") == 1.0);
     CHECK(file.word("terrain.curvature") == "full");
     CHECK_FALSE(file.given("scheme.cfl"));
     CHECK_FALSE(file.has("grid.cell"));

@@ -33,7 +33,7 @@ TEST_CASE("describe selects by key, by table and by beginning", "[case][describe
     CHECK(describe("material").find("scheme.cfl") == std::string::npos);
     CHECK(describe("xi").find("only with material.bed.law = voellmy") != std::string::npos);
     CHECK(describe("scheme.cfl")
-              .find("default: 0.5; 1.0 with scheme.preset = \"fast\"; 0.25 with scheme.preset = \"paper\"") !=
+              .find("default: 1.0; 0.25 with scheme.preset = \"paper\"; 0.5 with scheme.shape = \"linear\"") !=
           std::string::npos);
     CHECK(describe("barrier").find("height above the bed") != std::string::npos);
     CHECK_THROWS_WITH(describe("grid.cel2"), Catch::Contains("did you mean grid.cell?"));

@@ -232,11 +232,13 @@ TEST_CASE("Material asleep at an exit that opens leaves, and what stays has the 
     sleeper.open_exits(marks, true), waker.open_exits(marks, true);
     CHECK(sleeper.status().mass_left == Approx(inside).epsilon(1e-13));
     CHECK(same_columns(sleeper.flow().columns, waker.flow().columns));
+    double fastest = 0.0;
     for (int step = 0; step < 30; ++step) {
         sleeper.advance(1e9), waker.advance(1e9);
         CAPTURE(step);
+        fastest = std::max(fastest, waker.status().max_speed_on_map);
         REQUIRE(same_status(sleeper.status(), waker.status()));
         REQUIRE(same_columns(sleeper.flow().columns, waker.flow().columns));
     }
-    CHECK(waker.status().max_speed_on_map > 0.1);  // banks of 1 m fall into the gap
+    CHECK(fastest > 0.1);  // banks of 1 m fall into the gap
 }

@@ -102,7 +102,7 @@ inline Parameter paper(Parameter parameter, Value value) {
     return parameter;
 }
 
-/// Another default under the preset "fast": longer steps and fewer particles.
+/// Another default under the preset "fast": fewer particles.
 inline Parameter fast(Parameter parameter, Value value) {
     parameter.otherwise.push_back({"scheme.preset", text("fast"), std::move(value)});
     return parameter;

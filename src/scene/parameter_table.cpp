@@ -227,8 +227,8 @@ void add_material(Table& table) {
 void add_scheme(Table& table) {
     const Range small = above_to(0.0, 1.0);
     table.push_back(choice("scheme.preset", {"default", "fast", "paper"}, "default",
-                           "default; fast: half of the steps, fewer particles; paper: the choices of Fois et al. "
-                           "(2024); single keys override them"));
+                           "default; fast: fewer particles; paper: the choices of Fois et al. (2024); single keys "
+                           "override them"));
     table.push_back(paper(choice("scheme.shape", {"linear", "quadratic", "cubic"}, "quadratic", "shape functions"),
                           text("linear")));
     table.push_back(paper(choice("scheme.transfer", {"tpic", "apic", "flip", "pic"}, "tpic",
@@ -239,8 +239,12 @@ void add_scheme(Table& table) {
                            "quadratic shapes, tpic and the default preset"));
     table.push_back(with(number("scheme.flip_ratio", "1", fraction, 0.99, "share of FLIP, the rest is PIC"),
                          "scheme.transfer", {"flip"}));
-    table.push_back(
-        paper(fast(number("scheme.cfl", "1", small, 0.5, "largest way in one time step, in cells"), 1.0), 0.25));
+    Parameter cfl = paper(number("scheme.cfl", "1", small, 1.0,
+                                 "largest way in one time step, in cells; 0.5 at most is used "
+                                 "with [erodible] and with stages"),
+                          0.25);
+    cfl.otherwise.push_back({"scheme.shape", text("linear"), 0.5});
+    table.push_back(std::move(cfl));
     table.push_back(paper(number("scheme.filter", "1", fraction, 1.0, "strength of the surface filter"), 0.0));
     table.push_back(paper(
         number(

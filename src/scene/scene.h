@@ -42,7 +42,7 @@ struct Scheme {
     Transfer transfer = Transfer::tpic;
     Precision precision = Precision::full;
     double flip_ratio = 0.99;          ///< share of FLIP in transfer "flip" [1]
-    double cfl = 0.5;                  ///< fraction of a cell per step [1]
+    double cfl = 1.0;                  ///< fraction of a cell per step [1]
     double filter = 1.0;               ///< strength of the surface filter, 0 = off [1]
     double wave_shift = 1.0;           ///< by how much points leave two-cell waves, 0 = not at all [1]
     bool margin = true;                ///< extrapolate the surface at margins from the inside

@@ -50,8 +50,8 @@ std::vector<Problem> detrainment_problems() {
                  detrained_slab_residuals,
                  run_slab};
     slab.order_of = "thickness_error";
-    slab.gates = {{10, "thickness_error", 2e-6, "second order in the step: (a dt/u)^2/24 of what is taken"},
-                  {40, "thickness_error", 2e-7, "likewise"},
+    slab.gates = {{10, "thickness_error", 8e-6, "second order in the step: (a dt/u)^2/24 of what is taken"},
+                  {40, "thickness_error", 8e-7, "likewise"},
                   {0, "speed_error", 1e-6, "what is left is not slowed"},
                   {0, "travel_error", 1e-6, "likewise"},
                   {0, "balance_error", 1e-13, "round-off"}};

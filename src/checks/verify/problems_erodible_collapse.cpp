@@ -29,6 +29,7 @@ Scene column(double slope_deg, const Setup& setup, const ErosionLaw* law, double
                            [&](double x, double) { return -std::tan(slope) * x; });
     scene.sides = Sides::wall;
     scene.density = 1500.0;
+    scene.scheme.cfl = 0.5;  // on rock as on loose ground
     scene.bed_law = bed::Coulomb{std::tan(kRepose * kDegree)};
     fill_cut(scene, [&](double x, double) { return x < kCollapseLength * cosine ? kCollapseHeight / cosine : 0.0; },
              {setup.per_side});

@@ -90,7 +90,7 @@ void set_preset(Scene& scene, const std::string& preset) {
     scene.scheme.preset = preset == "float" ? "default" : preset;
     if (preset == "float") scene.scheme.precision = Precision::single;
     Scheme& s = scene.scheme;
-    if (preset == "fast") s.cfl = 1.0, s.split_length = 1.0, s.split_min_mass = 0.1;
+    if (preset == "fast") s.split_length = 1.0, s.split_min_mass = 0.1;
     if (preset != "paper") return;
     scene.terrain = TerrainModel::shallow;
     scene.curvature = Curvature::none;
