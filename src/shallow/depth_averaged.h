@@ -124,7 +124,7 @@ private:
     void take_late(const std::vector<const LateRelease*>& releases);
     template <class Real>
     double place_late(const LateRelease& release, PointSums& came);
-    void enter_added();
+    void enter(const Seeds& columns);
     void support_inflows();
     void fold_with_support();
     void leave_support_out(NodeSums& sums);
@@ -170,7 +170,7 @@ private:
     TileSorter sorter_;
     std::optional<Feed> feed_;          ///< nothing without inflows
     std::optional<LateReleases> late_;  ///< nothing without late releases
-    Seeds added_;                       ///< from outside, that wait for the next step
+    Seeds added_;                       ///< from outside, while the state that they belong to was put aside
     double mass_added_ = 0.0;           ///< that has entered [kg]
     bool aside_ = false;                ///< it comes back to a state that was put aside
     std::vector<Supported>

@@ -151,7 +151,7 @@ class Arrays(InFolder):
 class Numerics(unittest.TestCase):
     def test_the_solvers_sentence_is_read(self):
         error = frana.errors.of_numerics("step 7, t = 1.25 s, dt = 0.001 s: the point at (12.5, -3) has depth 0.3 m and would "
-                                         "move more than four cells in one step or is not finite; reduce scheme.cfl (now 0.5)")
+                                         "move more than four cells in one step or is not finite; reduce scheme.cfl (now 1)")
         self.assertEqual((error.step, error.time, error.point, error.value), (7, 1.25, (12.5, -3.0), 0.3))
 
 
