@@ -137,7 +137,13 @@ void write_for_kratos(const ConvertOptions& options, const RunState& state, cons
                       const SolidPoints& points, double density) {
     const CaseFile run_case = case_of_run(options.run_dir);
     const std::string law = run_case.word("material.rheology.law");
-    const double viscosity = law == "none" ? 0.0 : run_case.number("material.rheology.viscosity");
+    const char* const key = "material.rheology.viscosity";
+    if (law != "none" && run_case.is_text(key))
+        throw UserError(
+            fmt::format("{}: found a raster; expected one viscosity, since Kratos' fluid has no other; give "
+                        "the file a number instead of it in {}",
+                        run_case.place(key), run_case.file().string()));
+    const double viscosity = law == "none" ? 0.0 : run_case.number(key);
     const double sound = sound_speed(points, columns, run_case.number("terrain.gravity"));
     make_folder_of(options.out);
     write_kratos(

@@ -1,6 +1,7 @@
 // Friction that differs in space, under columns that hold together, grains beside water, and points in 3D.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "analytic_scene.h"
 #include "catch.h"
@@ -81,6 +82,30 @@ TEST_CASE("Nodes that all have the law of the scene change no bit of structured 
             if (water) scene.water.emplace(), scene.water->share = 0.3;
             check_same_bits(scene, 0.6);
         }
+}
+
+TEST_CASE("Cells that all have the water's friction change no bit of columns beside it; others do",
+          "[zones][structured][water]") {
+    const auto bits_of = [](double coefficient, std::optional<double> behind) {
+        Scene scene = on_slope(bed::Coulomb{0.25}, 5, 17);
+        hold_together(scene, 500.0, 0.0);
+        scene.water.emplace(), scene.water->share = 0.3;
+        scene.water->friction = {WaterFriction::Law::manning, coefficient};
+        if (behind) {
+            const GridGeometry& g = scene.bed.geometry;
+            std::vector<water::Manning> laws;
+            for (Index k = 0; k < g.size(); ++k) laws.push_back({g.x(k % g.nx) < 15.0 ? 0.1 : *behind});
+            Friction friction;
+            friction.water = laws::law_map<WaterLaw>(laws);
+            scene.friction = std::make_shared<const Friction>(std::move(friction));
+        }
+        const std::unique_ptr<Simulation> run = make_simulation(scene);
+        run_to(*run, 0.6);
+        return state_bits(*run);
+    };
+    const auto plain = bits_of(0.1, {});
+    CHECK((bits_of(0.9, 0.1) == plain));
+    CHECK_FALSE((bits_of(0.1, 0.3) == plain));
 }
 
 TEST_CASE("Nodes that all have the law of the scene change no bit of points in 3D", "[zones][stages]") {

@@ -199,6 +199,74 @@ TEST_CASE("Water fed at the head of a plane comes to its normal depth, and leave
     CHECK(flow.momentum_residual().norm() < 1e-12 * (l.ground.norm() + l.friction.norm()));
 }
 
+// Fast flow feels nothing from downstream, and after a few metres nothing from upstream: each zone has its own normal depth.
+// After 20 m what is left of the source and of the border is 5e-8. (Faster than 1.5 times waves roll waves would grow.)
+TEST_CASE("Water that runs from one roughness onto another has the normal depth of each", "[water][inflow][zones]") {
+    const double slope = 0.1, q = 0.8, border = 60.0, smooth = 0.06, rough = 0.08;  // Froude numbers of 1.4 and 1.1
+    const auto n_at = [=](double x, double) { return x < border ? smooth : rough; };
+    WaterScene s;
+    s.grid = verify::cells_over(60, 4, 2.0);
+    s.bed = [=](double x, double) { return 500.0 - slope * x; };
+    s.sides[1] = WaterSide::free;
+    s.sources = {across(s.grid, 2, q * 8.0, q / normal_depth(q, slope, smooth), 1e4)};
+    const auto check = [&](const char* law) {
+        WaterFlow flow(s);
+        go_to(flow, 600.0);
+        for (const auto& [i, n] : {std::pair<Index, double>{25, smooth}, {45, rough}, {58, rough}}) {
+            const double depth = normal_depth(q, slope, n);
+            CAPTURE(law, i, depth, flow.at(i, 1).depth);
+            CHECK(flow.at(i, 1).depth == Approx(depth).epsilon(1e-6));
+            CHECK(flow.at(i, 1).u == Approx(q / depth).epsilon(1e-6));
+        }
+        CHECK(std::abs(flow.volume_residual()) < 1e-12 * flow.status().ledger.fed);
+    };
+    s.friction = {WaterFriction::Law::manning, 0.5};  // its number is not asked for
+    s.friction_at = n_at;
+    check("water.friction");
+    std::vector<bed::Manning> laws;
+    for (Index j = 0; j < s.grid.ny; ++j)
+        for (Index i = 0; i < s.grid.nx; ++i) laws.push_back({n_at(s.grid.x(i), s.grid.y(j))});
+    s.bed_laws = std::make_shared<const bed::LawMap>(bed::law_map(laws));
+    s.friction_at = {};
+    check("material.bed");
+}
+
+TEST_CASE("Roughness that all cells have changes no bit of the water, and that of zones none by threads or a new start",
+          "[water][zones][threads]") {
+    WaterScene s;
+    s.grid = verify::cells_over(64, 40, 2.0);
+    s.bed = [](double x, double y) { return 500.0 - 0.2 * x + 0.01 * (y - 40.0) * (y - 40.0); };
+    s.start = [](double x, double y) {
+        return WaterState{std::hypot(x - 30.0, y - 40.0) < 15.0 ? 2.0 : 0.0, 1.0, 0.5};
+    };
+    for (auto& side : s.sides) side = WaterSide::free;
+    s.friction = {WaterFriction::Law::darcy_weisbach, 0.2};
+    const auto bits_at_end = [](const WaterScene& scene) {
+        WaterFlow flow(scene);
+        go_to(flow, 8.0);
+        return bits_with_ledger(flow);
+    };
+    const auto plain = bits_at_end(s);
+    s.friction.coefficient = 9.0;  // is not asked for
+    s.friction_at = [](double, double) { return 0.2; };
+    CHECK(bits_at_end(s) == plain);
+    s.friction_at = [](double x, double y) { return x < 50.0 ? 0.1 + 0.001 * y : 0.6; };
+    const int before = omp_get_max_threads();
+    omp_set_num_threads(1);
+    const auto alone = bits_at_end(s);
+    CHECK(alone != plain);
+    omp_set_num_threads(2);
+    CHECK(bits_at_end(s) == alone);
+    omp_set_num_threads(before);
+    WaterFlow straight(s), resumed(s);
+    MemoryArchive kept;
+    go_to(straight, 4.0);
+    straight.serialize(kept);
+    resumed.serialize(kept.rewind());
+    go_to(straight, 8.0), go_to(resumed, 8.0);
+    CHECK(bits_with_ledger(resumed) == bits_with_ledger(straight));
+}
+
 TEST_CASE("A bore goes out of a free side as if the channel went on", "[water][conserve]") {
     // Stoker's dam break; what is behind its bore has the middle state, and that has the whole channel in the end.
     const verify::Stoker wave(1.0, 0.2);

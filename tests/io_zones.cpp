@@ -20,6 +20,10 @@ xi = "xi.asc"
 [[material.zone]]
 outline = "fan.geojson"
 mu = 0.3
+rheology.viscosity = 30
+[material.rheology]
+law = "newtonian"
+viscosity = 10
 [output]
 every = 1
 formats = ["geotiff", "png"]
@@ -55,8 +59,10 @@ TEST_CASE("What was used of zones and rasters is said before a run and left by i
     const Zones plane;
     const Outcome check = plane.frana("check CASE");
     CHECK(check.code == 0);
-    CHECK_THAT(check.out, Contains("friction    material.zone.0 (fan.geojson): 5000 m2, mu 0.3, xi 400 to 500 m/s^2"));
-    CHECK_THAT(check.out, Contains("friction    elsewhere: 10000 m2, mu 0.1, xi 400 to 500 m/s^2"));
+    CHECK_THAT(check.out, Contains("friction    material.zone.0 (fan.geojson): 5000 m2, mu 0.3, xi 400 to 500 m/s^2, "
+                                   "rheology.viscosity 30 Pa s"));
+    CHECK_THAT(check.out, Contains("friction    elsewhere: 10000 m2, mu 0.1, xi 400 to 500 m/s^2, "
+                                   "rheology.viscosity 10 Pa s"));
     const fs::path dir = plane.folder() / "out";
     const Outcome run = plane.frana("run CASE --quiet --out " + dir.string());
     INFO(run.err);
@@ -65,14 +71,19 @@ TEST_CASE("What was used of zones and rasters is said before a run and left by i
     CHECK(mu.geometry == raster_of(dir / "rasters" / "peak_depth.tif").geometry);
     CHECK((mu.at(9, 4) == Approx(0.1) && mu.at(10, 4) == Approx(0.3) && mu.at(19, 4) == Approx(0.3) &&
            mu.at(20, 4) == Approx(0.1)));
+    const Raster viscosity = raster_of(dir / "rasters" / "rheology_viscosity.tif");
+    CHECK((viscosity.at(9, 4) == 10.0 && viscosity.at(10, 4) == 30.0));
     CHECK((xi.at(17, 9) == 400.0 && xi.at(18, 9) == 500.0));  // pixels end at 90 m
     CHECK(fs::file_size(dir / "figures" / "map_mu.png") > 1000);
     const std::string report = text_of(dir / "report.md");
-    for (const char* text : {"## Friction", "| material.zone.0 (fan.geojson) | 5000 m2, mu 0.3, xi 400 to 500 m/s^2 |",
-                             "[rasters/mu.tif](rasters/mu.tif)", "figures/map_xi.png"})
+    for (const char* text :
+         {"## Friction",
+          "| material.zone.0 (fan.geojson) | 5000 m2, mu 0.3, xi 400 to 500 m/s^2, rheology.viscosity 30 Pa s |",
+          "[rasters/mu.tif](rasters/mu.tif)", "figures/map_xi.png", "figures/map_rheology_viscosity.png"})
         CHECK_THAT(report, Contains(text));
     const Json json = Json::parse(text_of(dir / "run.json"));
     CHECK(json["friction"][0]["mu"]["low"] == 0.3);
+    CHECK(json["friction"][0]["rheology.viscosity"]["high"] == 30.0);
     CHECK(json["friction"][1]["area"] == 10000.0);
     const std::vector<std::string> files = json["files"];
     CHECK(std::find(files.begin(), files.end(), "rasters/xi.tif") != files.end());
@@ -92,6 +103,7 @@ TEST_CASE("A run with zones that stops goes on with the same bits, but not with 
     CHECK_THAT(other.err, Contains("found a state from before the file") && Contains("fan.geojson was changed"));
     plane.write_fan(100);
     CHECK(plane.frana("run CASE --quiet --resume --threads 1 --out " + half).code == 0);
-    for (const char* name : {"history.csv", "rasters/final_depth.tif", "rasters/mu.tif"})
+    for (const char* name :
+         {"history.csv", "rasters/final_depth.tif", "rasters/mu.tif", "rasters/rheology_viscosity.tif"})
         CHECK(text_of(fs::path(whole) / name) == text_of(fs::path(half) / name));
 }

@@ -29,7 +29,6 @@ std::vector<std::string> examples(const Values& values, bool named = true) {
     if (are == Are::given && !named) return {};
     if (are == Are::given) return {find_parameter(values.key)->kind == Kind::integer ? "1" : "0.5"};
     if (values.are == Are::tables) return {""};
-    if (values.are == Are::rasters) return {named ? "mu.tif" : "0.5"};
     std::vector<std::string> all = find_parameter(values.key)->choices;
     all.erase(std::remove_if(all.begin(), all.end(),
                              [&](const std::string& word) {
@@ -39,9 +38,6 @@ std::vector<std::string> examples(const Values& values, bool named = true) {
               all.end());
     return all;
 }
-
-/// The key of a row, or one of the table that it stands for.
-std::string key_of(const Values& values) { return values.key + (values.are == Are::rasters ? ".mu" : ""); }
 
 void give(Sets& sets, const std::string& key, const std::string& value) { sets.emplace(key, value); }
 
@@ -54,7 +50,6 @@ void complete(Sets& sets) {
     if (any("water.profile_factor"))
         give(sets, "water.model", "free"), give(sets, "material.structure.law", "drucker_prager");
     if (any("water.profile_factor") || any("water.solid_gradient")) give(sets, "water.viscous", "clear");
-    if (any("material.bed.mu")) give(sets, "material.bed.law", "coulomb");
     const auto law = sets.find("material.bed.law");
     if (law != sets.end() && law->second == "pouliquen") give(sets, "material.bed.mu_2", "0.75");  // more than mu_s
     if (any("terrain.unrolled")) give(sets, "material.structure.law", "drucker_prager");
@@ -77,7 +72,6 @@ const std::map<std::string, std::string> kTables = {
     {"stage", "[[stage]]\nmodel = \"solid_flow\"\n"},
     {"inflow", "[[inflow]]\nname = \"a\"\nline = [[0, 0], [9, 0]]\nvolume = 10\n"},
     {"section", "[[section]]\nname = \"a\"\nline = [[0, 0], [9, 0]]\n"},
-    {"material.zone", "[[material.zone]]\nabove = 10\nmanning_n = 0.1\n"},
     {"barrier", "[[barrier]]\noutline = \"wall.geojson\"\nheight = 3\n"}};
 
 /// "release.at" -> "release.0.at"; other keys as they are.
@@ -87,7 +81,6 @@ std::string in_first_table(const std::string& key) {
 }
 
 void parse(Sets sets, const std::vector<std::string>& tables) {
-    if (among(tables, "material.zone")) give(sets, "material.bed.law", "manning");
     if (sets.count("erodible.bed_evolves")) give(sets, "erodible.law", "energy");  // which has all of its numbers
     complete(sets);
     std::vector<std::string> arguments;
@@ -101,7 +94,6 @@ void parse(Sets sets, const std::vector<std::string>& tables) {
 std::string in_message(const Values& values, const std::string& value) {
     const bool word = values.are == Are::words || values.are == Are::others;
     const std::string article = values.key[0] == 'i' ? "an " : "a ";
-    if (values.are == Are::rasters) return "a raster";
     return values.are == Are::tables ? article + values.key : word ? "\"" + value + "\"" : value;
 }
 
@@ -110,7 +102,7 @@ std::string sentence(const Combination& row, const Values& partner, const std::s
                      const std::string& other) {
     const bool table = row.refused.are == Are::tables;
     const std::string with = row.said.empty() ? " with " + partner.key + " = " + in_message(partner, other) : row.said;
-    return (table ? "case.toml:9: " + row.refused.key + ".0" : "--set " + in_first_table(key_of(row.refused))) +
+    return (table ? "case.toml:9: " + row.refused.key + ".0" : "--set " + in_first_table(row.refused.key)) +
            ": found " + in_message(row.refused, value) + with + "; " + row.expected + "; " + row.way_out;
 }
 
@@ -131,12 +123,12 @@ TEST_CASE("What cannot go together is refused in the words of its row, and only 
                     sets[partner.key] = other;
                 for (const std::string& value : examples(row.refused)) {
                     Sets both = sets;
-                    if (!table) both[key_of(row.refused)] = value;
+                    if (!table) both[row.refused.key] = value;
                     CAPTURE(row.refused.key, value, partner.key, other);
                     CHECK(only_problem([&] { parse(both, tables); }) == sentence(row, partner, value, other));
                 }
                 for (const std::string& value : examples(row.refused, false)) {
-                    if (!table) sets[key_of(row.refused)] = value;
+                    if (!table) sets[row.refused.key] = value;
                     CAPTURE(row.refused.key, value, partner.key, other);
                     CHECK_NOTHROW(parse(sets, none));
                 }

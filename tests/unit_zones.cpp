@@ -261,7 +261,7 @@ TEST_CASE("What is wrong with zones and rasters of friction is said in one sente
     const std::string zone = std::string(kVoellmy) + "[[material.zone]]\n";
     CHECK(has(problem_of(gis, zone + "mu = 0.3\n"), "not given, and no above or below either"));
     CHECK(has(problem_of(gis, zone + "above = 10\n"),
-              "found no number of the bed law in it; expected keys of it: "
+              "found no number of a law in it; expected keys of the case's laws: "
               "friction_angle_deg, mu, xi"));
     CHECK(has(problem_of(gis, zone + "above = 10\nmu = 0.3\nmanning_n = 0.1\n"),
               "found, but material.bed.law = \"voellmy\" does not use it; expected keys of that law: "
@@ -276,7 +276,7 @@ TEST_CASE("What is wrong with zones and rasters of friction is said in one sente
               "mu.tif: found 1 pixel(s) out of range, such as -0.5 at x 1037.5, y 2027.5; expected numbers"));
     CHECK(has(
         problem_of(gis, std::string(kVoellmy) + "[material.rheology]\nlaw = \"newtonian\"\nviscosity = \"mu.tif\"\n"),
-        "expected a number"));
+        "mu.tif: found 1 pixel(s) out of range, such as -0.5 at x 1037.5, y 2027.5; expected numbers"));
     gis.rasters["mu.tif"].at(7, 5) = 0.5;
     const std::string mud = "[material.bed]\nlaw = \"bingham\"\nviscosity = 50\nyield_stress = 500\n",
                       stage =

@@ -132,13 +132,13 @@ double mean_friction(const Scene& scene, const FlowColumns& columns) {
 /// The largest friction at rest of a node in the window: where the bed brakes more than sand does inside, sand would shear above
 /// the bed, whatever friction a zone has.
 double largest_at_rest(const Scene& scene) {
-    if (!scene.friction) return friction_at_rest(scene.bed_law);
+    if (!scene.bed_laws()) return friction_at_rest(scene.bed_law);
     const std::array<Index, 4>& w = scene.solid->window;
     double largest = 0.0;
     for (Index j = w[1]; j <= w[3]; ++j)
         for (Index i = w[0]; i <= w[2]; ++i) {
             const auto node = static_cast<std::size_t>(j * scene.bed.geometry.nx + i);
-            largest = std::max(largest, friction_at_rest(scene.friction->laws.at(node)));
+            largest = std::max(largest, friction_at_rest(scene.bed_laws()->at(node)));
         }
     return largest;
 }

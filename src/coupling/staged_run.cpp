@@ -331,9 +331,9 @@ void StagedRun::remark_law(std::vector<std::string>& remarks) const {
             std::atan(start_.friction) / constants::kDegree,
             stage.whole_bed_law ? "the mean friction at the bed when the stage begins, and no less than the slope"
                                 : "as along the bed",
-            scene_.friction ? ", or the largest friction at rest in the stage's window" : ""));
+            scene_.bed_laws() ? ", or the largest friction at rest in the stage's window" : ""));
     if (stage.whole_bed_law || start_.stuck) return;
-    if (scene_.friction)
+    if (scene_.bed_laws())
         remarks.push_back(fmt::format(
             "points in space have a friction of {:.3g} at the bed, by stage.bed_friction, wherever they are; friction "
             "that differs in space is that of columns alone",

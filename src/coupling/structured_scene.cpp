@@ -158,7 +158,7 @@ StructuredScene structured_scene(const Scene& scene) {
     s.share = of.share;
     s.gravity = scene.gravity;
     s.bed_law = scene.bed_law;
-    if (scene.friction) s.laws = {scene.friction, &scene.friction->laws};
+    if (const auto* of_nodes = scene.bed_laws()) s.laws = {scene.friction, of_nodes};
     s.hydrostatic = of.hydrostatic;
     s.scheme = scene.scheme;
     if (!of.unrolled) s.bed = bed_under(scene), s.curved = scene.curvature != Curvature::none;
@@ -321,7 +321,14 @@ TwoPhaseScene two_phase_scene(const Scene& scene) {
     set_edges(scene, w);
     if (s.columns.curved) w.curvature = curvature_of(s.columns);
     w.friction = of.friction, w.viscosity = of.viscosity;
-    if (s.alone && !std::holds_alternative<bed::None>(scene.bed_law)) w.bed_law = scene.bed_law;
+    if (const WaterLawMap* of_nodes = scene.water_laws())
+        w.friction_at = [of_nodes, node](double x, double y) {
+            return water_friction(of_nodes->at(node(x, y))).coefficient;
+        };
+    if (s.alone && !std::holds_alternative<bed::None>(scene.bed_law)) {
+        w.bed_law = scene.bed_law;
+        if (const auto* of_nodes = scene.bed_laws()) w.bed_laws = {scene.friction, of_nodes};
+    }
     w.density = scene.density;
     w.gravity = scene.gravity;
     return s;

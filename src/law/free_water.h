@@ -3,6 +3,7 @@
 // Numbers of equations: src/water/THEORY.md.
 #include <algorithm>
 
+#include "base/node_values.h"
 #include "law/two_phase.h"
 #include "law/water_friction.h"
 
@@ -27,8 +28,11 @@ struct FreeWater {
     double *h, *qx, *qy;
     const double* bed;  ///< elevation above any datum [m]
     double film;        ///< water as shallow as this takes no part [m]
-    WaterFriction friction;
+    WaterFriction::Law friction;
+    NodeValues<double> coefficients;  ///< of that law
     WaterViscosity viscosity;
+
+    WaterFriction friction_at(Index k) const { return {friction, coefficients[k]}; }
 
     /// THEORY (17): share of its weight that water takes off a column's bed, 1 at most: what floats does not pull.
     double support(double bound_density, double bound_depth, double depth) const {

@@ -1,8 +1,47 @@
 #pragma once
 // Friction of water at the bed. Numbers of equations: src/water/THEORY.md.
 #include <cmath>
+#include <variant>
+#include <vector>
+
+#include "law/key.h"
+#include "law/law_map.h"
 
 namespace frana {
+
+/// Friction of water at the bed as a case names it: parameters and keys of each law.
+namespace water {
+
+struct None {
+    static constexpr const char* name = "none";
+    static constexpr const char* is = "";
+    static std::vector<laws::Key<None>> keys() { return {}; }
+};
+
+struct Manning {
+    double n = 0.0;  ///< roughness [s/m^(1/3)]
+
+    static constexpr const char* name = "manning";
+    static constexpr const char* is = "";
+    static std::vector<laws::Key<Manning>> keys() {
+        return {{&Manning::n, "manning_n", "s/m^(1/3)", ranges::above_to(0.0, 1.0), "Manning's roughness"}};
+    }
+};
+
+struct DarcyWeisbach {
+    double f = 0.0;  ///< factor [1]
+
+    static constexpr const char* name = "darcy_weisbach";
+    static constexpr const char* is = "";
+    static std::vector<laws::Key<DarcyWeisbach>> keys() {
+        return {{&DarcyWeisbach::f, "darcy_f", "1", ranges::positive, "Darcy and Weisbach's factor"}};
+    }
+};
+
+}  // namespace water
+
+using WaterLaw = std::variant<water::None, water::Manning, water::DarcyWeisbach>;
+using WaterLawMap = laws::LawMap<WaterLaw>;
 
 /// Stress over density k |V| V: g n^2 / T^(1/3) of Manning (n in s/m^(1/3)), or f / 8 of Darcy and Weisbach
 /// (f [1]); V is the velocity along the bed, T the thickness across it.
@@ -11,6 +50,13 @@ struct WaterFriction {
     Law law = Law::none;
     double coefficient = 0.0;  ///< n or f, >= 0
 };
+
+inline WaterFriction water_friction(const WaterLaw& law) {
+    if (const auto* manning = std::get_if<water::Manning>(&law)) return {WaterFriction::Law::manning, manning->n};
+    if (const auto* darcy = std::get_if<water::DarcyWeisbach>(&law))
+        return {WaterFriction::Law::darcy_weisbach, darcy->f};
+    return {};
+}
 
 /// Viscosity of free water in its flow (Pudasaini 2012, doi:10.1029/2011JF002186; van den Bout et al. 2021,
 /// doi:10.5194/gmd-14-1841-2021, eqs. 29 and 30, averaged over the depth).

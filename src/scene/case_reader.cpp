@@ -33,6 +33,14 @@ std::string repeated_table_of(const std::string& key) {
     return {};
 }
 
+/// The table of a key without numbers, known or not; empty: it has none.
+std::string table_of(const std::string& key) {
+    const std::string repeated = repeated_table_of(key);
+    if (!repeated.empty()) return repeated;
+    const std::size_t dot = key.rfind('.');
+    return dot == std::string::npos ? "" : key.substr(0, dot);
+}
+
 std::vector<std::string> names_in(const std::string& table) {
     std::vector<std::string> names;
     for (const Parameter& parameter : parameters())
@@ -55,9 +63,8 @@ std::vector<std::string> table_names() {
 /// The key that was meant by an unknown one: a neighbour in its table, the same name in another table, the
 /// nearest of all keys and tables. Empty when none is near.
 std::string meant(const std::string& key) {
-    const std::size_t dot = key.rfind('.');
-    const std::string table = dot == std::string::npos ? "" : key.substr(0, dot);
-    const std::string name = dot == std::string::npos ? key : key.substr(dot + 1);
+    const std::string table = table_of(key);
+    const std::string name = table.empty() ? key : key.substr(table.size() + 1);
     const std::string neighbour = closest(name, names_in(table));
     if (!neighbour.empty()) return table + "." + neighbour;
     std::vector<std::string> all = table_names();
@@ -186,7 +193,7 @@ void CaseReader::read_leaf(const toml::node& node, const Parameter& parameter, c
 
 void CaseReader::refuse_unknown(const std::string& key, int line, const std::string& place) {
     const std::string plain = without_numbers(key);
-    const std::string table = plain.find('.') == std::string::npos ? "" : plain.substr(0, plain.rfind('.'));
+    const std::string table = table_of(plain);
     const std::vector<std::string> names = names_in(table);
     const std::string known = table.empty() || names.empty() ? "one of the tables " + joined(table_names())
                                                              : fmt::format("a key of [{}]: {}", table, joined(names));

@@ -8,8 +8,11 @@
 #include "law/bed/laws.h"
 #include "law/catalogue.h"
 #include "law/detrainment.h"
+#include "law/rheology/laws.h"
+#include "law/water_friction.h"
 #include "scene/case_reader.h"
 #include "scene/combinations.h"
+#include "scene/law_places.h"
 #include "scene/salm_table.h"
 
 namespace frana {
@@ -20,8 +23,28 @@ bool contains(const std::vector<std::string>& words, const std::string& word) {
 }
 
 /// "release.0." + "depth" for the parameter release.depth.
-std::string concrete(const std::string& prefix, const std::string& key) {
-    return prefix + key.substr(key.rfind('.') + 1);
+std::string concrete(const std::string& prefix, const std::string& key) { return prefix + find_parameter(key)->name(); }
+
+/// The keys of a law's numbers, and those that a case's choice of the law uses, as zones name them.
+struct ZoneKeys {
+    std::string choice, chosen;
+    std::vector<std::string> all, used;
+};
+
+template <class Any>
+ZoneKeys keys_of(const CaseFile& file, const LawPlace& place) {
+    ZoneKeys keys{place.choice, file.word(place.choice), {}, {}};
+    for (const laws::SharedKey& key : laws::Catalogue<Any>::keys()) {
+        keys.all.push_back(place.in_zone + key.name);
+        if (contains(key.used_by, keys.chosen)) keys.used.push_back(keys.all.back());
+    }
+    return keys;
+}
+
+std::string keys_text(const std::vector<std::string>& keys) {
+    std::string text;
+    for (const std::string& key : keys) text += (text.empty() ? "" : ", ") + key;
+    return text.empty() ? "none" : text;
 }
 
 std::vector<std::string> files_of(const Parameter& parameter, const Value& value) {
@@ -343,7 +366,7 @@ void CaseReader::check_inflow(const std::string& prefix) {
         wrong(prefix + "peak", "found together with table", "expected it with volume only", "remove one of them");
 }
 
-/// A zone has a place, and says something of the case's bed law and of nothing else.
+/// A zone has a place, and says something of the case's laws and of nothing else.
 void CaseReader::check_zone(const std::string& prefix) {
     const auto there = [&](const std::string& name) {
         return case_.given(prefix + name) || misread_.count(prefix + name) > 0;
@@ -355,23 +378,25 @@ void CaseReader::check_zone(const std::string& prefix) {
         case_.number(prefix + "above") >= case_.number(prefix + "below"))
         wrong(prefix + "above", fmt::format("found {:.6g}", case_.number(prefix + "above")),
               fmt::format("expected less than below = {:.6g}", case_.number(prefix + "below")), "correct one of them");
-    if (misread_.count("material.bed.law")) return;
-    const std::string& law = case_.word("material.bed.law");
-    std::string known;
+    std::vector<std::string> known;
     bool any = false;
-    for (const laws::SharedKey& key : laws::Catalogue<BedLaw>::keys()) {
-        const bool used = contains(key.used_by, law);
-        if (used) known += (known.empty() ? "" : ", ") + key.name;
-        any = any || there(key.name);
+    for (const LawPlace& place : kLawPlaces)
+        if (misread_.count(place.choice)) return;
+    for (const ZoneKeys& keys : {keys_of<BedLaw>(case_, kBedPlace), keys_of<Rheology>(case_, kRheologyPlace),
+                                 keys_of<WaterLaw>(case_, kWaterPlace)}) {
+        for (const std::string& key : keys.all) {
+            any = any || there(key);
+            if (!there(key) || contains(keys.used, key)) continue;
+            wrong(prefix + key, fmt::format("found, but {} = \"{}\" does not use it", keys.choice, keys.chosen),
+                  fmt::format("expected keys of that law: {}", keys_text(keys.used)),
+                  fmt::format("remove it, or choose {}", keys.choice));
+        }
+        known.insert(known.end(), keys.used.begin(), keys.used.end());
     }
-    if (known.empty()) known = "none";
-    for (const laws::SharedKey& key : laws::Catalogue<BedLaw>::keys())
-        if (there(key.name) && !contains(key.used_by, law))
-            wrong(prefix + key.name, fmt::format("found, but material.bed.law = \"{}\" does not use it", law),
-                  fmt::format("expected keys of that law: {}", known), "remove it, or choose material.bed.law");
     if (!any)
         problems_.add(line_of(prefix), case_.table_place(prefix.substr(0, prefix.size() - 1)),
-                      "found no number of the bed law in it", fmt::format("expected keys of it: {}", known),
+                      "found no number of a law in it",
+                      fmt::format("expected keys of the case's laws: {}", keys_text(known)),
                       "add one of them, or remove the zone");
 }
 

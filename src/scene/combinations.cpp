@@ -29,7 +29,6 @@ std::string value_text(const CaseFile& file, const Values& values) {
     if (values.are == Are::given && file.is_text(values.key)) return "\"" + file.word(values.key) + "\"";
     if (values.are == Are::on) return "true";
     if (values.are == Are::off) return "false";
-    if (values.are == Are::rasters) return "a raster";
     if (values.are == Are::tables) return (values.key[0] == 'i' ? "an " : "a ") + values.key;
     return fmt::format("{:.6g}", file.number(values.key_in(file)));
 }
@@ -150,10 +149,6 @@ void add_water_alone(std::vector<Combination>& table) {
                          "remove one of them",
                          " with material.bed",
                          one_law});
-    refuse({"material.zone", Are::tables}, "expected none: one law brakes what flows as water", "remove it");
-    refuse({"material.bed", Are::rasters}, "expected a number: one law brakes what flows as water", "give a number");
-    refuse(is_not("material.bed.table", {"none"}), "expected \"none\": one law brakes what flows as water",
-           "remove it");
     refuse(is_not("material.rheology.law", {"none"}), "expected \"none\": water has the viscosity of water.viscous",
            "remove it, and give water.viscous");
     refuse({"water.share", Are::above_zero}, "expected 0: all that is released is water", "remove it");
@@ -348,20 +343,7 @@ std::string with_text(const Combination& row) {
 
 }  // namespace
 
-std::vector<std::string> rasters_in(const CaseFile& file, const std::string& table) {
-    std::vector<std::string> keys;
-    for (const Parameter& parameter : parameters())
-        if (parameter.table() == table && parameter.kind == Kind::number_or_path && file.given(parameter.key) &&
-            file.is_text(parameter.key))
-            keys.push_back(parameter.key);
-    return keys;
-}
-
 std::string Values::key_in(const CaseFile& file) const {
-    if (are == Are::rasters) {
-        const std::vector<std::string> keys = rasters_in(file, key);
-        return keys.empty() ? std::string() : keys.front();
-    }
     for (const std::string& one : keys_of(file, key))
         if (holds(file, *this, one)) return one;
     return {};
@@ -385,8 +367,6 @@ std::string Values::text() const {
             return key + " = false";
         case Are::given:
             return key;
-        case Are::rasters:
-            return "a raster in [" + key + "]";
         default:
             return "[[" + key + "]]";
     }

@@ -8,15 +8,10 @@
 
 namespace frana {
 
-/// The keys of a table of the case that rasters are given for.
-std::vector<std::string> rasters_in(const CaseFile& file, const std::string& table);
-
 /// Some of the values that a key can have, or tables of a name that are there at all.
 struct Values {
-    enum class Are { words, others, without, above_zero, zero, on, off, tables, rasters, given };
-    std::string
-        key;  ///< of tables their name, of rasters that of the table whose keys they stand for; "release.at" is that
-              ///< of any [[release]]
+    enum class Are { words, others, without, above_zero, zero, on, off, tables, given };
+    std::string key;  ///< of tables their name; "release.at" is that of any [[release]]
     Are are = Are::words;
     std::vector<std::string> words = {};  ///< those, all others, or (without) what a list of words lacks
 

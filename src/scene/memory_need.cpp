@@ -69,13 +69,17 @@ double most_points(const Scene& scene) {
 
 /// Of the laws of nodes, in the scene and in the solver [bytes].
 double memory_of(const Friction& friction, double nodes) {
-    const double places = 2.0 * sizeof(std::uint32_t) * nodes;
-    return places + std::visit(
-                        [](const auto& table) {
-                            using Law = typename std::decay_t<decltype(table)>::value_type;
-                            return (2.0 * sizeof(Law) + sizeof(double)) * double(table.size());
-                        },
-                        friction.laws.laws);
+    const auto of = [nodes](const auto& map) {
+        if (map.place.empty()) return 0.0;
+        const double places = 2.0 * sizeof(std::uint32_t) * nodes;
+        return places + std::visit(
+                            [](const auto& table) {
+                                using Law = typename std::decay_t<decltype(table)>::value_type;
+                                return (2.0 * sizeof(Law) + sizeof(double)) * double(table.size());
+                            },
+                            map.laws);
+    };
+    return of(friction.laws) + of(friction.rheologies) + of(friction.water);
 }
 
 /// Columns begin from a copy of the fields that barriers stand in.

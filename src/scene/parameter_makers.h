@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "law/catalogue.h"
+#include "scene/law_places.h"
 #include "scene/parameters.h"
 
 namespace frana {
@@ -115,6 +117,19 @@ inline Parameter with(Parameter parameter, const char* key, std::vector<std::str
     parameter.used_by = std::move(used_by);
     parameter.required_by = std::move(needed_by);
     return parameter;
+}
+
+/// The numbers of laws that may differ in space, each a number or a raster: laws bring their own keys.
+template <class Law>
+void add_numbers(Table& table, const LawPlace& place) {
+    for (const laws::SharedKey& key : laws::Catalogue<Law>::keys()) {
+        const std::string name = place.table + key.name;
+        Parameter row = number(name.c_str(), key.unit.c_str(), key.range, key.meaning.c_str());
+        row.kind = Kind::number_or_path;
+        if (key.usual) row.fallback = *key.usual;
+        if (!key.instead_of.empty()) row.instead_of = place.table + key.instead_of;
+        table.push_back(with(row, place.choice, key.used_by, key.needed_by));
+    }
 }
 
 }  // namespace rows

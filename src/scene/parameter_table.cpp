@@ -5,7 +5,9 @@
 #include "law/bed/laws.h"
 #include "law/catalogue.h"
 #include "law/rheology/laws.h"
+#include "law/water_friction.h"
 #include "scene/inflow_table.h"
+#include "scene/law_places.h"
 #include "scene/parameter_makers.h"
 #include "scene/parameter_ranges.h"
 
@@ -143,20 +145,12 @@ void add_inflow(Table& table) {
     table.push_back(goes_with(velocity, "inflow.line"));
 }
 
-/// Laws bring their own keys.
 template <class Law>
-void add_law(Table& table, const std::string& of, const std::string& is, Kind kind = Kind::number) {
+void add_law(Table& table, const LawPlace& place, const std::string& is) {
     using Laws = laws::Catalogue<Law>;
-    const std::string law = of + ".law", meaning = is + Laws::other_names();
-    table.push_back(choice(law.c_str(), Laws::words(), "none", meaning.c_str()));
-    for (const laws::SharedKey& key : Laws::keys()) {
-        const std::string name = of + "." + key.name;
-        Parameter row = number(name.c_str(), key.unit.c_str(), key.range, key.meaning.c_str());
-        row.kind = kind;
-        if (key.usual) row.fallback = *key.usual;
-        if (!key.instead_of.empty()) row.instead_of = of + "." + key.instead_of;
-        table.push_back(with(row, law.c_str(), key.used_by, key.needed_by));
-    }
+    const std::string meaning = is + Laws::other_names();
+    table.push_back(choice(place.choice, Laws::words(), "none", meaning.c_str()));
+    add_numbers<Law>(table, place);
 }
 
 /// Friction of snow by classes of ground, instead of mu and xi.
@@ -190,7 +184,19 @@ void add_friction_table(Table& table) {
              "below the first it is convex; choices of frana's"));
 }
 
-/// Where friction is another: any key of the bed law.
+/// Those of a law that are others in a zone.
+template <class Law>
+void add_zone_numbers(Table& table, const LawPlace& place) {
+    const std::string zone = "material.zone." + std::string(place.in_zone);
+    for (const laws::SharedKey& key : laws::Catalogue<Law>::keys()) {
+        const std::string name = zone + key.name;
+        Parameter row = number(name.c_str(), key.unit.c_str(), key.range, key.meaning.c_str());
+        if (!key.instead_of.empty()) row.instead_of = zone + key.instead_of;
+        table.push_back(absent(row, "as without the zone"));
+    }
+}
+
+/// Where friction is another: any key of the bed law, the rheology and the friction of water.
 void add_zones(Table& table) {
     const char* const everywhere = "not bounded so";
     table.push_back(absent(make("material.zone.outline", Kind::path, "",
@@ -201,22 +207,19 @@ void add_zones(Table& table) {
         absent(number("material.zone.above", "m", any_number, "elevation from which on it is the zone"), everywhere));
     table.push_back(
         absent(number("material.zone.below", "m", any_number, "elevation below which it is the zone"), everywhere));
-    for (const laws::SharedKey& key : laws::Catalogue<BedLaw>::keys()) {
-        const std::string name = "material.zone." + key.name;
-        Parameter row = number(name.c_str(), key.unit.c_str(), key.range, key.meaning.c_str());
-        if (!key.instead_of.empty()) row.instead_of = "material.zone." + key.instead_of;
-        table.push_back(absent(row, "as without the zone"));
-    }
+    add_zone_numbers<BedLaw>(table, kBedPlace);
+    add_zone_numbers<Rheology>(table, kRheologyPlace);
+    add_zone_numbers<WaterLaw>(table, kWaterPlace);
 }
 
 void add_material(Table& table) {
     Parameter density = number("material.density", "kg/m^3", positive, 1000.0, "density of the mass");
     for (const MassKind& mass : mass_kinds()) density.otherwise.push_back({"case.kind", text(mass.name), mass.density});
     table.push_back(density);
-    add_law<BedLaw>(table, "material.bed", "friction between the mass and its bed", Kind::number_or_path);
+    add_law<BedLaw>(table, kBedPlace, "friction between the mass and its bed");
     add_friction_table(table);
     add_zones(table);
-    add_law<Rheology>(table, "material.rheology", "stress inside the mass");
+    add_law<Rheology>(table, kRheologyPlace, "stress inside the mass");
     add_structure(table);
     add_erodible(table);
     add_deposition(table);

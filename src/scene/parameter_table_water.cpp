@@ -1,5 +1,6 @@
 // The keys of [water]: free water, beside solids that hold together or alone.
 #include "law/free_water.h"
+#include "law/water_friction.h"
 #include "scene/parameter_makers.h"
 
 namespace frana {
@@ -51,11 +52,8 @@ void add_water(Table& table) {
     rate("water.rain", "rain, or a raster of it; 1 mm/h is 2.8e-7");
     rate("water.infiltration", "what the ground takes of free water at most, or a raster of it");
     table.push_back(
-        used(choice("water.friction", {"none", "manning", "darcy_weisbach"}, "none", "friction of water at the bed")));
-    table.push_back(with(number("water.manning_n", "s/m^(1/3)", above_to(0.0, 1.0), "Manning's roughness"),
-                         "water.friction", {"manning"}, {"manning"}));
-    table.push_back(with(number("water.darcy_f", "1", positive, "Darcy and Weisbach's factor"), "water.friction",
-                         {"darcy_weisbach"}, {"darcy_weisbach"}));
+        used(choice(kWaterPlace.choice, laws::Catalogue<WaterLaw>::words(), "none", "friction of water at the bed")));
+    add_numbers<WaterLaw>(table, kWaterPlace);
     table.push_back(used(
         number("water.density", "kg/m^3", positive, usual.material.fluid_density, "of the water, confined or free")));
     table.push_back(used(number("water.viscosity", "Pa s", positive, usual.material.viscosity,

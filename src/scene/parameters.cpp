@@ -82,9 +82,13 @@ std::string Parameter::switch_of(const std::string& own_key) const {
                : switch_key;
 }
 
-std::string Parameter::table() const { return key.substr(0, key.rfind('.')); }
+std::string Parameter::table() const { return key.substr(0, key.size() - name().size() - 1); }
 
-std::string Parameter::name() const { return key.substr(key.rfind('.') + 1); }
+std::string Parameter::name() const {
+    for (const std::string& repeated : repeated_tables())
+        if (key.compare(0, repeated.size() + 1, repeated + ".") == 0) return key.substr(repeated.size() + 1);
+    return key.substr(key.rfind('.') + 1);
+}
 
 std::string Parameter::expected() const {
     const std::string in_unit = unit.empty() || unit == "1" ? "" : " [" + unit + "]";

@@ -67,7 +67,7 @@ struct Parameter {
     /// switch_key for the parameter's own `key`: "insitu.2.kind" for "insitu.2.field".
     std::string switch_of(const std::string& key) const;
     std::string table() const;     ///< "release" of "release.depth"
-    std::string name() const;      ///< "depth" of "release.depth"
+    std::string name() const;      ///< "depth" of "release.depth"; "rheology.viscosity" in a repeated table
     std::string expected() const;  ///< "a number above 0 [m]"
 };
 

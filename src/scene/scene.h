@@ -15,7 +15,7 @@
 #include "law/detrainment.h"
 #include "law/erosion/laws.h"
 #include "law/free_water.h"
-#include "law/rheology/laws.h"
+#include "law/rheology/law_map.h"
 #include "law/solid_law.h"
 #include "law/structured_law.h"
 #include "law/water_friction.h"
@@ -238,11 +238,14 @@ struct FrictionPart {
     std::vector<Extent> extents;  ///< of each parameter that differs somewhere
 };
 
-/// Friction that differs in space (shallow/THEORY.md, section 19).
+/// Friction that differs in space: bed laws, rheologies and what brakes free water (shallow/THEORY.md, section 19), on the
+/// nodes of the bed. A map without nodes: one law everywhere, the scene's.
 struct Friction {
-    bed::LawMap laws;                 ///< on the nodes of the bed
-    std::vector<std::string> keys;    ///< of the parameters that differ
+    bed::LawMap laws;                 ///< of the bed
+    std::vector<std::string> keys;    ///< of the parameters that differ, as zones name them: "mu", "rheology.viscosity"
     std::vector<FrictionPart> parts;  ///< zones in their order, then what is outside of them
+    rheology::LawMap rheologies = {};
+    WaterLawMap water = {};
 };
 
 /// What is written, and when.
@@ -305,8 +308,8 @@ struct Scene {
     std::optional<double> still_surface;       ///< level of a release given as one horizontal surface at rest [m]: the
                                                ///< points' masses are then fitted so that it starts at exact rest
     BedLaw bed_law;                            ///< its mean where friction differs in space
-    std::shared_ptr<const Friction> friction;  ///< nothing: bed_law everywhere
-    Rheology rheology;
+    std::shared_ptr<const Friction> friction;  ///< nothing: the same everywhere
+    Rheology rheology;                         ///< likewise its mean
     Scheme scheme;
 
     double end = 10.0;  ///< [s]
@@ -328,6 +331,11 @@ struct Scene {
 
     std::vector<std::string> log;  ///< remarks made while building (resampling, nodata, ...)
 
+    /// The laws of the nodes; nullptr: one everywhere, bed_law or rheology or that of `water`.
+    const bed::LawMap* bed_laws() const { return friction ? nodes_of(friction->laws) : nullptr; }
+    const rheology::LawMap* rheologies() const { return friction ? nodes_of(friction->rheologies) : nullptr; }
+    const WaterLawMap* water_laws() const { return friction ? nodes_of(friction->water) : nullptr; }
+
     /// Flow takes up bed, or becomes bed.
     bool bed_changes() const { return erodible || deposition || forest; }
     /// The ground follows what is taken or left behind.
@@ -338,9 +346,17 @@ struct Scene {
         for (const LateRelease& release : late) all.push_back(&release.seeds);
         return all;
     }
+
+private:
+    template <class Laws>
+    static const Laws* nodes_of(const Laws& laws) {
+        return laws.place.empty() ? nullptr : &laws;
+    }
 };
 
 /// The bed law of the node nearest to a place.
 BedLaw bed_law_at(const Scene& scene, const Vec2& place);
+/// What brakes free water there, where that differs in space; else `everywhere`.
+WaterFriction water_friction_at(const Scene& scene, const Vec2& place, const WaterFriction& everywhere);
 
 }  // namespace frana

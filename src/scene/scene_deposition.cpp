@@ -12,9 +12,9 @@ namespace {
 bool holds_a_push(const Scene& scene) {
     const BedState state{scene.gravity, 1.0, 1.0, 1.0, scene.gravity, scene.density};
     const auto holds = [&](const auto& law) { return law.speed_after(state, 0.0, 1e-9, 1.0) == 0.0; };
-    if (!scene.friction) return std::visit(holds, scene.bed_law);
+    if (!scene.bed_laws()) return std::visit(holds, scene.bed_law);
     const auto one_holds = [&](const auto& table) { return std::any_of(table.begin(), table.end(), holds); };
-    return std::visit(one_holds, scene.friction->laws.laws);
+    return std::visit(one_holds, scene.bed_laws()->laws);
 }
 
 }  // namespace

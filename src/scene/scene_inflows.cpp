@@ -298,9 +298,8 @@ private:
     /// What holds the flow at an even speed. Water's friction is a bed law: Darcy and Weisbach's is Voellmy's drag alone, with
     /// xi = 8 g / f.
     BedLaw law() const {
-        if (!water_) return bed_law_at(scene_, inflow_.middle());
-        if (case_.word("material.bed.law") != "none") return scene_.bed_law;
-        const WaterFriction of = water_friction(case_);
+        if (!water_ || case_.word("material.bed.law") != "none") return bed_law_at(scene_, inflow_.middle());
+        const WaterFriction of = water_friction_at(scene_, inflow_.middle(), water_friction(case_));
         if (of.law == WaterFriction::Law::manning) return bed::Manning{of.coefficient};
         if (of.law == WaterFriction::Law::none) return bed::None{};
         return bed::Voellmy{0.0, 8.0 * scene_.gravity / of.coefficient};

@@ -22,9 +22,11 @@ void set_physics(const CaseFile& file, Scene& scene);
 
 /// Whether the case takes friction from a table of classes.
 bool friction_by_table(const CaseFile& file);
+/// The keys of laws' numbers that the case gives rasters for: of the bed law, the rheology and water.friction.
+std::vector<std::string> rasters_of_laws(const CaseFile& file);
 /// Whether the case has such a table, zones of friction or rasters of it.
 bool friction_differs(const CaseFile& file);
-/// The table (`released` [m3] tells the class of size), rasters under [material.bed], and all [[material.zone]], of a
+/// The table (`released` [m3] tells the class of size), rasters of laws' numbers, and all [[material.zone]], of a
 /// scene that has its terrain and its laws. What is wrong with them goes to `problems`, remarks to the scene's log. Where
 /// nothing differs in space nothing happens.
 void read_friction(const CaseFile& file, const GisReader& reader, double released, Scene& scene, Problems& problems);
@@ -73,7 +75,7 @@ inline bool water_alone(const CaseFile& file) {
     return file.word("water.model") == "free" && file.word("material.structure.law") == "none";
 }
 
-/// Friction of free water at the bed.
+/// Friction of free water at the bed, where it is the same everywhere.
 WaterFriction water_friction(const CaseFile& file);
 
 /// [material.structure] of a scene that has its terrain and its barriers. What does not fit together goes to `problems`.

@@ -1,21 +1,9 @@
-#include <optional>
-
 #include "base/error.h"
-#include "law/catalogue.h"
+#include "scene/law_places.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
 namespace {
-
-/// The law of a table whose key `law` names it, from its other keys.
-template <class Law>
-Law law_of(const CaseFile& file, const std::string& table) {
-    return laws::Catalogue<Law>::make(file.word(table + ".law"), [&](const std::string& name) {
-        const std::string key = table + "." + name;
-        const bool number = file.has(key) && !file.is_text(key);  // a raster is for scene_friction.cpp
-        return number ? std::optional<double>(file.number(key)) : std::nullopt;
-    });
-}
 
 Transfer transfer_of(const std::string& word) {
     if (word == "tpic") return Transfer::tpic;
@@ -100,8 +88,8 @@ void set_physics(const CaseFile& file, Scene& scene) {
     scene.terrain = terrain_of(file.word("terrain.model"));
     scene.curvature = curvature_of(file.word("terrain.curvature"));
     scene.sides = file.word("boundary.sides") == "wall" ? Sides::wall : Sides::open;
-    scene.bed_law = law_of<BedLaw>(file, "material.bed");
-    scene.rheology = law_of<Rheology>(file, "material.rheology");
+    scene.bed_law = law_of<BedLaw>(file, kBedPlace);
+    scene.rheology = law_of<Rheology>(file, kRheologyPlace);
     scene.scheme = scheme_of(file);
     scene.end = file.number("time.end");
     scene.stop_at_rest = file.flag("time.stop_at_rest");

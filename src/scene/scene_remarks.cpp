@@ -86,8 +86,12 @@ void remark_on_kind(const CaseFile& file, Scene& scene) {
     if (!file.has("case.kind")) return;
     // The kind's density is that of what flows: of grains and water beside them together.
     if (file.word("water.model") == "none") remark_on_kind(file, "material.density", "material.density", scene);
-    for (const char* key : {"material.rheology.yield_stress", "material.rheology.viscosity"})
-        remark_on_kind(file, key, key, scene);
+    for (const std::string name : {"rheology.yield_stress", "rheology.viscosity"}) {
+        const std::string of_case = "material." + name;
+        remark_on_kind(file, of_case, of_case, scene);
+        for (Index i = 0; i < file.count("material.zone"); ++i)
+            remark_on_kind(file, fmt::format("material.zone.{}.{}", i, name), of_case, scene);
+    }
     for (const std::string name : {"mu", "friction_angle_deg", "xi", "manning_n", "yield_stress", "viscosity"}) {
         const std::string of_bed = "material.bed." + name;
         remark_on_kind(file, of_bed, of_bed, scene);

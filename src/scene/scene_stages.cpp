@@ -102,7 +102,7 @@ private:
                           "expected one of both: what is stuck does not slide", "remove one of them");
         stage.split = case_.flag(prefix_ + "split");
         stage.bed_friction = number_or("bed_friction", friction_at_rest(scene_.bed_law));
-        stage.whole_bed_law = !given("bed_friction") && (scene_.friction || hangs_on_speed(scene_.bed_law));
+        stage.whole_bed_law = !given("bed_friction") && (scene_.bed_laws() || hangs_on_speed(scene_.bed_law));
         stage.cfl = number("cfl");
         read_transfer(stage);
         stage.profile = profile_of(case_.word(prefix_ + "profile"));
@@ -215,12 +215,26 @@ private:
         return std::get_if<bed::Bingham>(&scene_.bed_law);
     }
 
+    /// Whether a stage of that law has a number of the case's rheology.
+    bool takes_rheology(const std::string& law) const {
+        const bool viscous = (law == "fluid" || law == "bingham") && !given("viscosity");
+        const bool yields = (law == "bingham" || law == "herschel_bulkley") && !given("yield_stress") &&
+                            std::holds_alternative<rheology::Bingham>(scene_.rheology);
+        return viscous || yields;
+    }
+
     SolidLaw law(SolidStage& stage) {
         const std::string law = law_of_case();
-        if (mud_of_bed() && scene_.friction)
+        if (mud_of_bed() && scene_.bed_laws())
             problems_.add(case_.place("material.bed.law"), "found \"bingham\" that differs in space, with a stage",
                           "expected one yield stress and viscosity: mud in space has the same everywhere",
                           "name the stage's law, or remove what makes material.bed differ");
+        if (scene_.rheologies() && takes_rheology(law))
+            problems_.add(case_.place("material.rheology.law"),
+                          fmt::format("found \"{}\" that differs in space, with a stage that takes its numbers",
+                                      case_.word("material.rheology.law")),
+                          "expected one of each: material in space has the same everywhere",
+                          "give stage.viscosity and stage.yield_stress, or remove what makes material.rheology differ");
         if (law == "of_bed") {
             stage.of_bed = true;
             for (const char* name : {"yield_stress", "shear_modulus", "friction_angle_deg", "cohesion", "cone",

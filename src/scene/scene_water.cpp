@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "scene/law_places.h"
 #include "scene/nodes_of_place.h"
 #include "scene/remarks.h"
 #include "scene/scene_parts.h"
@@ -242,12 +243,7 @@ std::array<WaterPhase::Side, 4> read_sides(const CaseFile& file, Scene& scene) {
 
 }  // namespace
 
-WaterFriction water_friction(const CaseFile& file) {
-    const std::string& law = file.word("water.friction");
-    if (law == "manning") return {WaterFriction::Law::manning, number(file, "manning_n")};
-    if (law == "darcy_weisbach") return {WaterFriction::Law::darcy_weisbach, number(file, "darcy_f")};
-    return {};
-}
+WaterFriction water_friction(const CaseFile& file) { return water_friction(law_of<WaterLaw>(file, kWaterPlace)); }
 
 std::optional<WaterPhase> read_water(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems) {
     if (file.word("water.model") == "none") return {};

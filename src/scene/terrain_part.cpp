@@ -60,7 +60,7 @@ bool fields_may_follow(const CaseFile& file, const GisReader& reader, const Rast
                reader.place_of(file.path(key), whole.geometry.pixel_extent(), whole.crs_wkt).needs_warp;
     };
     std::vector<std::string> keys{"erodible.depth", "forest.detrainment"};
-    for (const std::string& key : rasters_in(file, "material.bed")) keys.push_back(key);
+    for (const std::string& key : rasters_of_laws(file)) keys.push_back(key);
     return std::none_of(keys.begin(), keys.end(), hangs_on_part);
 }
 

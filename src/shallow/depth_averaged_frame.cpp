@@ -256,7 +256,10 @@ void DepthAveraged::stress_fields(Frame& frame) {
     double* effective = store_.raw(frame.particles, "effective_stress", "Pa", 3, count);
     double* at_nodes = store_.zeros(frame.nodes, "stress", "Pa", 3, nodes);
     double* effective_nodes = store_.zeros(frame.nodes, "effective_stress", "Pa", 3, nodes);
-    std::visit([&](const auto& law) { stress_at_points(law, at_points); }, rheology_);
+    if (flow_.rheologies)
+        stress_at_points(RheologyOfEachNode{}, at_points);
+    else
+        std::visit([&](const auto& law) { stress_at_points(law, at_points); }, rheology_);
     stress_on_nodes(at_points);
     const double half_weight = 0.5 * flow_.density * flow_.gravity;
 #pragma omp parallel for schedule(static)
@@ -279,23 +282,25 @@ void DepthAveraged::stress_at_points(const Law& law, double* stresses) const {
         const Index count = c.count();
         const double velocity_dt = status_.dt > 0.0 ? status_.dt : longest_step();
         const double cap = most_viscosity(flow_, velocity_dt);
+        with_rheology_of(law, flow_.rheologies, [&](const auto& rheology) {
 #pragma omp parallel for schedule(static)
-        for (Index p = 0; p < count; p += 4) {
-            const int lanes = static_cast<int>(std::min<Index>(4, count - p));
-            const auto four = [&](const auto& column) { return load(&column[p], lanes); };
-            const Double4 vx = four(probe_.vx), vy = four(probe_.vy), depth = four(probe_.depth), none = {};
-            const Mask4 wet = depth > flow_.dry_depth();
-            const PlaneOf<Double4> rate{four(probe_.cxx), four(probe_.cyy),
-                                        0.5 * (four(probe_.cxy) + four(probe_.cyx))};
-            const Double4 shear =
-                shear_of_four(flow_, four(c.x), four(c.y), lanes, vx, vy, max(depth, all(flow_.dry_depth())));
-            const PlaneOf<Double4> sigma =
-                law.stress(StrainState<Double4>{rate, shear, flow_.scheme.strain_rate_floor, cap});
-            const Double4 xx = select(wet, sigma.xx, none), yy = select(wet, sigma.yy, none),
-                          xy = select(wet, sigma.xy, none);
-            for (int n = 0; n < lanes; ++n)
-                stresses[3 * (p + n)] = xx[n], stresses[3 * (p + n) + 1] = yy[n], stresses[3 * (p + n) + 2] = xy[n];
-        }
+            for (Index p = 0; p < count; p += 4) {
+                const int lanes = static_cast<int>(std::min<Index>(4, count - p));
+                const auto four = [&](const auto& column) { return load(&column[p], lanes); };
+                const Double4 vx = four(probe_.vx), vy = four(probe_.vy), depth = four(probe_.depth), none = {};
+                const Mask4 wet = depth > flow_.dry_depth();
+                const PlaneOf<Double4> rate{four(probe_.cxx), four(probe_.cyy),
+                                            0.5 * (four(probe_.cxy) + four(probe_.cyx))};
+                const Double4 shear =
+                    shear_of_four(flow_, four(c.x), four(c.y), lanes, vx, vy, max(depth, all(flow_.dry_depth())));
+                const PlaneOf<Double4> sigma = rheology.stress(
+                    four(c.x), four(c.y), StrainState<Double4>{rate, shear, flow_.scheme.strain_rate_floor, cap});
+                const Double4 xx = select(wet, sigma.xx, none), yy = select(wet, sigma.yy, none),
+                              xy = select(wet, sigma.xy, none);
+                for (int n = 0; n < lanes; ++n)
+                    stresses[3 * (p + n)] = xx[n], stresses[3 * (p + n) + 1] = yy[n], stresses[3 * (p + n) + 2] = xy[n];
+            }
+        });
     }
 }
 

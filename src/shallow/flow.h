@@ -8,6 +8,7 @@
 #include "shallow/bed_geometry.h"
 #include "shallow/columns.h"
 #include "shallow/node_laws.h"
+#include "shallow/node_rheologies.h"
 #include "shallow/nodes.h"
 #include "shallow/rest.h"
 
@@ -34,7 +35,8 @@ struct Flow {
                 scene.terrain != TerrainModel::shallow, scene.rheology.index() != 0 || scene.scheme.paper_pressure,
                 scene.scheme},
                make_bed_geometry(scene, TileGrid(scene.bed.geometry))) {
-        if (scene.friction) laws.emplace(scene.friction->laws, grid);
+        if (const auto* of_nodes = scene.bed_laws()) laws.emplace(*of_nodes, grid);
+        if (const auto* of_nodes = scene.rheologies()) rheologies.emplace(*of_nodes, grid);
     }
     Flow(const FlowSetup& setup, BedGeometry of)
         : grid(setup.grid),
@@ -57,7 +59,8 @@ struct Flow {
 
     TileGrid grid;
     BedGeometry bed;
-    std::optional<NodeLaws> laws;  ///< nothing: one bed law everywhere
+    std::optional<NodeLaws> laws;              ///< nothing: one bed law everywhere
+    std::optional<NodeRheologies> rheologies;  ///< nothing: one rheology everywhere
     Nodes nodes;
     Columns columns;
     ActiveTiles active;

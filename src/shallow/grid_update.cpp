@@ -415,7 +415,7 @@ private:
 
 template <class Terrain>
 std::unique_ptr<GridUpdateKernel> with_law(const Scene& scene) {
-    if (scene.friction)
+    if (scene.bed_laws())
         return std::make_unique<Kernel<LawOfEachNode, Terrain>>(LawOfEachNode{}, scene.scheme.paper_pressure);
     return std::visit(
         [&](const auto& law) -> std::unique_ptr<GridUpdateKernel> {

@@ -1,8 +1,7 @@
 #include "shallow/node_laws.h"
 
-#include <algorithm>
-
 #include "law/bed/node_friction.h"
+#include "mpm/on_storage.h"
 
 namespace frana {
 namespace {
@@ -22,18 +21,12 @@ Double4 one_by_one(const std::vector<Law>& laws, const std::array<std::uint32_t,
 
 }  // namespace
 
-NodeLaws::NodeLaws(const bed::LawMap& all, const TileGrid& grid) : laws(all.laws), place(grid.size()) {
+NodeLaws::NodeLaws(const bed::LawMap& all, const TileGrid& grid) : laws(all.laws), place(on_storage(all.place, grid)) {
     std::visit(
         [this](const auto& table) {
             for (const auto& law : table) at_rest.push_back(law.friction_at_rest());
         },
         laws);
-    const Index rows = grid.size() / grid.stride() - kTile, columns = grid.stride() - kTile;
-    for (Index j = -kTile; j < rows; ++j)
-        for (Index i = -kTile; i < columns; ++i) {
-            const Index row = std::clamp<Index>(j, 0, grid.ny() - 1), column = std::clamp<Index>(i, 0, grid.nx() - 1);
-            place[grid.at(i, j)] = all.place[static_cast<std::size_t>(row * grid.nx() + column)];
-        }
 }
 
 void LawsHere<Double4>::brake(const BedStateOf<Double4>& bed, const Double4& s0, const Double4& driven, double dt,

@@ -191,7 +191,9 @@ private:
                 const Plane rate{c.cxx[p], c.cyy[p], 0.5 * (c.cxy[p] + c.cyx[p])};
                 const double shear = shear_at(flow, c.x[p], c.y[p], vx, vy, c.depth[p]);
                 const StrainState<double> state{rate, shear, flow.scheme.strain_rate_floor, cap};
-                const Plane sigma = law_.stress(state);
+                Plane sigma;
+                with_rheology_of(law_, flow.rheologies,
+                                 [&](const auto& rheology) { sigma = rheology.stress(c.x[p], c.y[p], state); });
                 deposit_stress(flow, sx, sy, volume, sigma);
                 sums.stress_power += volume * (sigma.xx * rate.xx + sigma.yy * rate.yy + 2.0 * sigma.xy * rate.xy);
             }
@@ -319,16 +321,15 @@ private:
 
 template <class S, Transfer kTransfer>
 std::unique_ptr<TransferKernel> with_rheology(const Scene& scene) {
-    return std::visit(
-        [&](const auto& law) -> std::unique_ptr<TransferKernel> {
-            using Law = std::decay_t<decltype(law)>;
-            if constexpr (std::is_same_v<S, Cubic>)
-                expect(!scene.scheme.paper_pressure, "cubic shapes with pressure on points");
-            else if (scene.scheme.paper_pressure)
-                return std::make_unique<Kernel<S, kTransfer, Law, true>>(law);
-            return std::make_unique<Kernel<S, kTransfer, Law, false>>(law);
-        },
-        scene.rheology);
+    const auto kernel = [&](const auto& law) -> std::unique_ptr<TransferKernel> {
+        using Law = std::decay_t<decltype(law)>;
+        if constexpr (std::is_same_v<S, Cubic>)
+            expect(!scene.scheme.paper_pressure, "cubic shapes with pressure on points");
+        else if (scene.scheme.paper_pressure)
+            return std::make_unique<Kernel<S, kTransfer, Law, true>>(law);
+        return std::make_unique<Kernel<S, kTransfer, Law, false>>(law);
+    };
+    return scene.rheologies() ? kernel(RheologyOfEachNode{}) : std::visit(kernel, scene.rheology);
 }
 
 template <class S>

@@ -183,9 +183,11 @@ private:
         if constexpr (kStress) {
             Double4 shear[kBatch / 4];
             for_each_four(first, end, [&](Index p, int lanes) { shear[(p - first) / 4] = shear_of(flow, p, lanes); });
-            for_each_four(first, end, [&](Index p, int lanes) {
-                const Index n = (p - first) / 4;
-                internal_force[n] = internal_force_of(flow, p, lanes, shear[n], cap, sums);
+            with_rheology_of(law_, flow.rheologies, [&](const auto& rheology) {
+                for_each_four(first, end, [&](Index p, int lanes) {
+                    const Index n = (p - first) / 4;
+                    internal_force[n] = internal_force_of(rheology, flow, p, lanes, shear[n], cap, sums);
+                });
             });
         }
         for_each_four(first, end, [&](Index p, int lanes) {
@@ -232,8 +234,9 @@ private:
     }
 
     /// V sigma / cell of four points [N], the explicit stress capped (scheme.stress_cap).
-    PlaneOf<Double4> internal_force_of(const Flow& flow, Index p, int lanes, Double4 shear, double cap,
-                                       Sums& sums) const {
+    template <class Points>
+    static PlaneOf<Double4> internal_force_of(const Points& rheology, const Flow& flow, Index p, int lanes,
+                                              Double4 shear, double cap, Sums& sums) {
         const Columns& c = flow.columns;
         const Carried<Real>& held = c.carried<Real>();
         const Double4 depth = load(&held.depth[p], lanes);
@@ -241,7 +244,8 @@ private:
         const double per_density = 1.0 / flow.density, per_cell = 1.0 / flow.cell;
         const PlaneOf<Double4> rate{load(&held.cxx[p], lanes), load(&held.cyy[p], lanes), 0.5 * (cxy + cyx)};
         const PlaneOf<Double4> sigma =
-            law_.stress(StrainState<Double4>{rate, shear, flow.scheme.strain_rate_floor, cap});
+            rheology.stress(load(&c.x[p], lanes), load(&c.y[p], lanes),
+                            StrainState<Double4>{rate, shear, flow.scheme.strain_rate_floor, cap});
         const Double4 volume = depth > flow.dry_depth() ? per_density * load(&c.mass[p], lanes) : zero;
         sums.stress_power += volume * (sigma.xx * rate.xx + sigma.yy * rate.yy + 2.0 * sigma.xy * rate.xy);
         return scaled(sigma, per_cell * volume);
@@ -413,6 +417,7 @@ private:
 
 template <class Real>
 std::unique_ptr<TransferKernel> packed_kernel(const Scene& scene) {
+    if (scene.rheologies()) return std::make_unique<PackedKernel<RheologyOfEachNode, Real>>(RheologyOfEachNode{});
     return std::visit(
         [](const auto& law) -> std::unique_ptr<TransferKernel> {
             return std::make_unique<PackedKernel<std::decay_t<decltype(law)>, Real>>(law);

@@ -85,7 +85,7 @@ Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, con
     // Of what drives the water friction takes a part, and all of it at most.
     const Vec2 falls = -body.ground[k].across * met.slope;
     const double drive = falls.norm(),
-                 brake = quadratic_drag(water.friction, {body.gravity, h, 1.0}) * u.velocity.squaredNorm() +
+                 brake = quadratic_drag(water.friction_at(k), {body.gravity, h, 1.0}) * u.velocity.squaredNorm() +
                          linear_drag(water.viscosity, total) * u.velocity.norm();
     const Vec2 carried = drive > brake ? Vec2(falls * (1.0 - brake / drive)) : Vec2(0, 0);
     const double flux = (mixture.bound() * c.velocity + mixture.free() * u.velocity).norm();

@@ -65,6 +65,14 @@ std::array<double, 4> lakes_of(const WaterScene& scene, double datum) {
     return lakes;
 }
 
+/// One law stands in a table of its own.
+std::optional<bed::LawTable> laws_of(const WaterScene& scene) {
+    if (scene.bed_laws) return scene.bed_laws->laws;
+    if (!scene.bed_law) return {};
+    return std::visit([](const auto& law) { return bed::LawTable(std::vector<std::decay_t<decltype(law)>>{law}); },
+                      *scene.bed_law);
+}
+
 }  // namespace
 
 void WaterLedger::add(const WaterLedger& o, double share) {
@@ -88,9 +96,13 @@ WaterBody::WaterBody(const WaterScene& scene)
       rain(at_nodes(scene.rain, grid)),
       infiltration(at_nodes(scene.infiltration, grid)),
       sides(scene.sides),
-      friction(scene.friction),
+      friction(scene.friction.law),
+      coefficient(scene.friction_at ? OnNodes<double>(at_nodes(scene.friction_at, grid))
+                                    : OnNodes<double>(scene.friction.coefficient)),
       viscosity(scene.viscosity),
-      bed_law(scene.bed_law),
+      bed_laws(laws_of(scene)),
+      bed_law(scene.bed_laws ? OnNodes<std::uint32_t>(on_storage(scene.bed_laws->place, grid))
+                             : OnNodes<std::uint32_t>(std::uint32_t{0})),
       density(scene.density),
       gravity(scene.gravity),
       theta(scene.theta),

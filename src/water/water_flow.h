@@ -5,14 +5,16 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "base/clock.h"
 #include "base/constants.h"
-#include "law/bed/laws.h"
+#include "law/bed/law_map.h"
 #include "law/free_water.h"
 #include "law/water_friction.h"
+#include "mpm/on_storage.h"
 #include "mpm/step_clock.h"
 #include "mpm/tile_grid.h"
 #include "observe/frame.h"
@@ -60,11 +62,13 @@ struct WaterScene {
     std::array<double, 4> side_levels{};  ///< of the water beyond sides that hold one [m]
     std::vector<WaterSource> sources;
     WaterFriction friction;
+    Function friction_at = {};  ///< its coefficient, where that differs in space
     WaterViscosity viscosity;
     /// Brakes in place of both where there is one: what flows may be mud, or an avalanche.
     std::optional<BedLaw> bed_law;
-    double density = 1000.0;               ///< that the bed law is given [kg/m^3]
-    double gravity = constants::kGravity;  ///< [m/s^2]
+    std::shared_ptr<const bed::LawMap> bed_laws;  ///< those of the nodes, where they differ in space
+    double density = 1000.0;                      ///< that the bed law is given [kg/m^3]
+    double gravity = constants::kGravity;         ///< [m/s^2]
     /// Gravity across the ground is g / (1 + |grad b|^2), as for solids (structured/ground.h), so that thin
     /// water slides down a steep plane as a block does; else g, which are the shallow-water equations as they
     /// are printed. Both keep lakes at rest: each cell's slope of the surface is multiplied by its own value.
@@ -148,9 +152,11 @@ struct WaterBody {
     std::vector<Index> work;      ///< tiles that hold water, be it a film, or are within its reach
     std::vector<WaterSums> sums;  ///< of the step, per tile of the list
     std::array<WaterSide, 4> sides;
-    WaterFriction friction;
+    WaterFriction::Law friction;
+    OnNodes<double> coefficient;  ///< of that law
     WaterViscosity viscosity;
-    std::optional<BedLaw> bed_law;
+    std::optional<bed::LawTable> bed_laws;
+    OnNodes<std::uint32_t> bed_law;  ///< its place in that table
     double density;
     double gravity, theta, film;
     double datum;  ///< lets water high above the sea keep its digits [m]
@@ -190,7 +196,7 @@ public:
     void lend(FreeWater& to) {
         to.h = body_.now.h.data(), to.qx = body_.now.qx.data(), to.qy = body_.now.qy.data();
         to.bed = body_.bed.data(), to.film = body_.film, to.friction = body_.friction;
-        to.viscosity = body_.viscosity;
+        to.coefficients = body_.coefficient.view(), to.viscosity = body_.viscosity;
     }
     /// Takes up what columns on these tiles (ascending) changed: status and ledger know it from now on.
     void take_changes(const std::vector<Index>& tiles);

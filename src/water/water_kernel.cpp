@@ -334,7 +334,7 @@ struct Water {
 
 /// Something slows water at the bed.
 bool brakes_of(const WaterBody& body) {
-    return body.bed_law || body.friction.law != WaterFriction::Law::none || body.viscosity.kinematic > 0.0;
+    return body.bed_laws || body.friction != WaterFriction::Law::none || body.viscosity.kinematic > 0.0;
 }
 
 /// Velocity at the start of the step, none of a film.
@@ -360,10 +360,11 @@ void brake(const WaterBody& body, Index k, double dt, Water& w) {
     if (!brakes_of(body) || discharge == 0.0) return;
     const Vec2 direction = q / discharge;
     const double start = std::max(0.0, velocity_before(body, k).dot(direction));
-    if (body.bed_law) {
+    if (body.bed_laws) {
         const BedState seen = seen_by_law(body, k, w.h, direction, start);
         const double left = std::visit(
-            [&](const auto& law) { return law.speed_after(seen, start, discharge / w.h, dt); }, *body.bed_law);
+            [&](const auto& laws) { return laws[body.bed_law[k]].speed_after(seen, start, discharge / w.h, dt); },
+            *body.bed_laws);
         w.qx = left * w.h * direction.x(), w.qy = left * w.h * direction.y();
         return;
     }
@@ -375,7 +376,7 @@ void brake(const WaterBody& body, Index k, double dt, Water& w) {
         bed.thickness *= cosine, whole *= cosine, bed.kappa = std::sqrt(1.0 + along * along);
     }
     const double speed = braked_speed(start, discharge / w.h, linear_drag(body.viscosity, whole),
-                                      quadratic_drag(body.friction, bed), dt);
+                                      quadratic_drag({body.friction, body.coefficient[k]}, bed), dt);
     w.qx = speed * w.h * direction.x(), w.qy = speed * w.h * direction.y();
 }
 

@@ -55,7 +55,8 @@ private:
 std::string toml_of(const Draft& draft) {
     std::map<std::string, std::string> tables;  // keys of [water] lie around those of [water.sides]
     for (const auto& [key, value] : draft.keys) {
-        const std::size_t dot = key.rfind('.');
+        const std::size_t number = key.find('#');  // keys of a repeated table may have dots of their own
+        const std::size_t dot = number == std::string::npos ? key.rfind('.') : key.find('.', number);
         tables[key.substr(0, dot)] += fmt::format("{} = {}\n", key.substr(dot + 1), value);
     }
     std::string text;

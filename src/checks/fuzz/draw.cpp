@@ -207,7 +207,7 @@ Draft draw(Model model, std::uint64_t seed, std::uint64_t n) {
     draft.claims.threads = threads, draft.claims.resumes = resumes;  // with threads the terrain is wide
     draw_other(dice, draft);
     Dice friction(salted(seed, kFriction), n);
-    if (model != Model::flood && friction.chance(0.2)) draw_friction(friction, draft);
+    if (friction.chance(0.2)) draw_friction(friction, draft);
     // No scene gets there. Mud as thick as is drawn has steps too short for more (scene_water.cpp).
     draft.keys["time.end"] = draft.has("water.mud_alpha") ? "1.0e4" : "1.0e6";
     draft.keys["output.formats"] = "[\"vtk\"]";

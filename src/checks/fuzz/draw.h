@@ -46,7 +46,7 @@ void draw_inflow(Dice& dice, Draft& draft);
 void draw_spring(Dice& dice, Draft& draft);
 /// Another release, which enters at a time or when the flow reaches it.
 void draw_late(Dice& dice, Draft& draft);
-/// A zone, or a raster, of a number of the bed law that is drawn so far.
+/// A zone, or a raster, of a number of a law that is drawn so far: at the bed, inside, or of water.
 void draw_friction(Dice& dice, Draft& draft);
 /// Makes every raster, and velocity, its own mirror image.
 void mirror(Draft& draft, Mirror mirror);

@@ -1,42 +1,55 @@
-// Friction of a random case that differs in space.
+// Friction of a random case that differs in space: of its bed law, its rheology or its water.
 #include <algorithm>
 #include <cmath>
 
 #include "checks/fuzz/draw.h"
+#include "scene/law_places.h"
 #include "scene/parameters.h"
 
 namespace frana::stress {
 namespace {
 
-/// Numbers of the bed law that are given and may be rasters.
-std::vector<const Parameter*> numbers_of_law(const Draft& draft) {
-    std::vector<const Parameter*> all;
-    for (const Parameter& key : parameters())
-        if (key.table() == "material.bed" && key.kind == Kind::number_or_path && draft.has(key.key))
-            all.push_back(&key);
+/// A number that the draft gives and that may differ in space.
+struct Placed {
+    const Parameter* key;
+    std::string in_zone;  ///< its name there
+};
+
+std::vector<Placed> numbers_of_laws(const Draft& draft) {
+    std::vector<Placed> all;
+    for (const LawPlace& place : kLawPlaces)
+        for (const Parameter& key : parameters())
+            if (key.switch_key == place.choice && key.kind == Kind::number_or_path && draft.has(key.key))
+                all.push_back({&key, place.in_zone + key.name()});
     return all;
+}
+
+/// "rheology.viscosity" -> "rheology_viscosity.tif".
+std::string file_of(std::string name) {
+    std::replace(name.begin(), name.end(), '.', '_');
+    return name + ".tif";
 }
 
 }  // namespace
 
 void draw_friction(Dice& dice, Draft& draft) {
     if (draft.claims.rests || draft.claims.mirror != Mirror::none) return;
-    const std::vector<const Parameter*> numbers = numbers_of_law(draft);
+    const std::vector<Placed> numbers = numbers_of_laws(draft);
     if (numbers.empty() || draft.has("material.bed.mu_s")) return;  // of mu_s and mu_2 one has to be larger
-    const Parameter& key = *numbers[static_cast<std::size_t>(dice.below(static_cast<Index>(numbers.size())))];
+    const Placed& placed = numbers[static_cast<std::size_t>(dice.below(static_cast<Index>(numbers.size())))];
+    const Parameter& key = *placed.key;
     const double usual = std::stod(draft.keys.at(key.key));
     const std::vector<double>& heights = draft.dem().values;
     const double height = heights[static_cast<std::size_t>(dice.below(static_cast<Index>(heights.size())))];
     if (dice.chance(0.5) && std::isfinite(height)) {
         say(draft, "material.zone#0.above", height);
-        const std::string name = key.key.substr(key.key.rfind('.') + 1);
-        say(draft, "material.zone#0." + name, std::min(usual * dice.decades(0.1, 10.0), key.range.high));
+        say(draft, "material.zone#0." + placed.in_zone, std::min(usual * dice.decades(0.1, 10.0), key.range.high));
         return;
     }
     Raster map = Raster::filled(draft.dem().geometry, 0.0);
     for (double& value : map.values) value = single(usual * dice.decades(0.1, 1.0));
-    draft.rasters["friction.tif"] = map;
-    draft.keys[key.key] = "\"friction.tif\"";
+    draft.rasters[file_of(placed.in_zone)] = map;
+    draft.keys[key.key] = "\"" + file_of(placed.in_zone) + "\"";
 }
 
 }  // namespace frana::stress

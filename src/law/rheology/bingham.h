@@ -1,4 +1,5 @@
 #pragma once
+#include <type_traits>
 #include <vector>
 
 #include "law/key.h"
@@ -20,34 +21,42 @@ template <class Real>
     return 1.0 - y;
 }
 
-/// A viscous fluid that yields.
-struct Bingham {
-    double viscosity = 0.0;     ///< [Pa s]
-    double yield_stress = 0.0;  ///< [Pa]
+/// A viscous fluid that yields. Number: double, or Double4 for four points that differ.
+template <class Number>
+struct BinghamOf {
+    Number viscosity{};     ///< [Pa s]
+    Number yield_stress{};  ///< [Pa]
 
     static constexpr const char* name = "bingham";
     static constexpr const char* is = "";
-    static std::vector<laws::Key<Bingham>> keys() {
-        return {{&Bingham::viscosity, "viscosity", "Pa s", ranges::not_negative, "viscosity"},
-                {&Bingham::yield_stress, "yield_stress", "Pa", ranges::not_negative,
+    static std::vector<laws::Key<BinghamOf>> keys() {
+        return {{&BinghamOf::viscosity, "viscosity", "Pa s", ranges::not_negative, "viscosity"},
+                {&BinghamOf::yield_stress, "yield_stress", "Pa", ranges::not_negative,
                  "stress below which the mass does not flow"}};
     }
 
     /// src/shallow/THEORY.md (23), (24): sigma = (2 mu + tau_Y / sqrt(I2 + floor^2)) eps (Fois et al. 2024, eq. 3,
     /// corrected). I2 holds the plane strain rate, its incompressible vertical part, and the shear across the bed,
-    /// 3/(2 + zeta) V/T, of a Bingham sheet (eq. 4).
+    /// 3/(2 + zeta) V/T, of a Bingham sheet (eq. 4). Where nothing yields it is Newton's.
     template <class Real>
     [[gnu::always_inline]] PlaneOf<Real> stress(const StrainState<Real>& s) const {
-        if (yield_stress <= 0.0) return viscous_stress(viscosity, s);
+        const auto yields = yield_stress > 0.0;
+        if (!any(yields)) return viscous_stress(viscosity, s);
+        const Number yield = select(yields, yield_stress, Number{} + 1.0);
         // I2 + floor^2 times (2 + zeta)^2: a division less.
-        const Real two_zeta = 2.0 + plug_share(6.0 * viscosity / yield_stress * s.shear), shear = 3.0 * s.shear;
+        const Real two_zeta = 2.0 + plug_share(6.0 * viscosity / yield * s.shear), shear = 3.0 * s.shear;
         const Real zz = s.rate.xx + s.rate.yy;
         const Real plane =
             0.5 * (s.rate.xx * s.rate.xx + s.rate.yy * s.rate.yy + zz * zz) + s.rate.xy * s.rate.xy + s.floor * s.floor;
         const Real i2 = two_zeta * two_zeta * plane + 0.25 * shear * shear;
-        const Real viscous = 2.0 * viscosity + yield_stress * two_zeta / sqrt(i2);
-        return scaled(s.rate, min(viscous, Real{} + s.cap));
+        const Real viscous = 2.0 * viscosity + yield * two_zeta / sqrt(i2);
+        const Real whole = min(viscous, Real{} + s.cap);
+        if constexpr (std::is_same_v<Number, double>)
+            return scaled(s.rate, whole);
+        else
+            return scaled(s.rate, select(yields, whole, min(2.0 * viscosity, Real{} + s.cap)));
     }
 };
+using Bingham = BinghamOf<double>;
 
 }  // namespace frana::rheology

@@ -6,14 +6,15 @@
 
 namespace frana::rheology {
 
-/// A viscous fluid.
-struct Newtonian {
-    double viscosity = 0.0;  ///< [Pa s]
+/// A viscous fluid. Number: double, or Double4 for four points that differ.
+template <class Number>
+struct NewtonianOf {
+    Number viscosity{};  ///< [Pa s]
 
     static constexpr const char* name = "newtonian";
     static constexpr const char* is = "";
-    static std::vector<laws::Key<Newtonian>> keys() {
-        return {{&Newtonian::viscosity, "viscosity", "Pa s", ranges::not_negative, "viscosity"}};
+    static std::vector<laws::Key<NewtonianOf>> keys() {
+        return {{&NewtonianOf::viscosity, "viscosity", "Pa s", ranges::not_negative, "viscosity"}};
     }
 
     template <class Real>
@@ -21,5 +22,6 @@ struct Newtonian {
         return viscous_stress(viscosity, s);
     }
 };
+using Newtonian = NewtonianOf<double>;
 
 }  // namespace frana::rheology

@@ -1,8 +1,6 @@
 #pragma once
 // What a rheology sees of a point, and what it answers. Pressure is not part of it. Numbers of equations:
 // src/shallow/THEORY.md, section 7.
-#include <cmath>
-
 #include "base/simd.h"
 
 namespace frana {
@@ -28,10 +26,10 @@ template <class Real>
     return {factor * rate.xx, factor * rate.yy, factor * rate.xy};
 }
 
-/// Newton's stress: sigma = 2 mu eps, as far as that is stable.
-template <class Real>
-[[gnu::always_inline]] inline PlaneOf<Real> viscous_stress(double viscosity, const StrainState<Real>& s) {
-    return scaled(s.rate, Real{} + std::fmin(2.0 * viscosity, s.cap));
+/// Newton's stress: sigma = 2 mu eps, as far as that is stable. Number: double, or Double4 for four points that differ.
+template <class Number, class Real>
+[[gnu::always_inline]] inline PlaneOf<Real> viscous_stress(Number viscosity, const StrainState<Real>& s) {
+    return scaled(s.rate, Real{} + min(2.0 * viscosity, Number{} + s.cap));
 }
 
 }  // namespace frana

@@ -15,6 +15,7 @@
 #include "compare/deposit.h"
 #include "io/gdal_reader.h"
 #include "io/gdal_writer.h"
+#include "scene/law_places.h"
 #include "scene/parameters.h"
 
 namespace frana {
@@ -172,23 +173,51 @@ std::optional<Raster> ever_covered(const std::vector<ProductRaster>& rasters) {
     return deepest_cover(peak->raster, with_deposit(flow->raster, &bed->raster));
 }
 
+/// "rheology_viscosity" of what zones call rheology.viscosity.
+static std::string raster_name(std::string of_zone) {
+    std::replace(of_zone.begin(), of_zone.end(), '.', '_');
+    return of_zone;
+}
+
+/// A number of a law on the nodes, by its key in a case.
+static std::vector<double> values_of(const Friction& friction, const std::string& key) {
+    const auto of = [&](const LawPlace& place, const auto& map) {
+        const std::size_t begins = std::string(place.table).size();
+        return key.compare(0, begins, place.table) == 0 ? laws::parameter_on_nodes(map, key.substr(begins))
+                                                        : std::vector<double>();
+    };
+    std::vector<double> values = of(kBedPlace, friction.laws);
+    if (values.empty()) values = of(kRheologyPlace, friction.rheologies);
+    return values.empty() ? of(kWaterPlace, friction.water) : values;
+}
+
 std::vector<ProductRaster> friction_rasters(const Friction& friction, const Raster& bed) {
     std::vector<ProductRaster> rasters;
     for (const std::string& name : friction.keys) {
         Raster raster = bed;
-        raster.source = name;
-        const std::vector<double> values = bed::parameter_on_nodes(friction.laws, name);
+        const std::string key_name = key_of_zone_name(name), file = raster_name(name);
+        raster.source = file;
+        const std::vector<double> values = values_of(friction, key_name);
         for (std::size_t node = 0; node < values.size(); ++node)
             if (!std::isnan(raster.values[node])) raster.values[node] = values[node];
-        const Parameter& key = *find_parameter("material.bed." + name);
-        rasters.push_back({name, key.unit, key.meaning, std::move(raster)});
+        const Parameter& key = *find_parameter(key_name);
+        rasters.push_back({file, key.unit, key.meaning, std::move(raster)});
     }
     return rasters;
 }
 
+std::vector<std::pair<std::string, const Parameter*>> friction_keys() {
+    std::vector<std::pair<std::string, const Parameter*>> keys;
+    for (const LawPlace& place : kLawPlaces)
+        for (const Parameter& key : parameters())
+            if (key.switch_key == place.choice && key.kind == Kind::number_or_path)
+                keys.emplace_back(raster_name(place.in_zone + key.name()), &key);
+    return keys;
+}
+
 bool is_friction(const std::string& name) {
-    const Parameter* key = find_parameter("material.bed." + name);
-    return key != nullptr && key->kind == Kind::number_or_path;
+    const auto keys = friction_keys();
+    return std::any_of(keys.begin(), keys.end(), [&](const auto& key) { return key.first == name; });
 }
 
 const ProductRaster* find_product(const std::vector<ProductRaster>& rasters, const std::string& name) {
@@ -236,8 +265,7 @@ std::vector<ProductRaster> read_rasters(const fs::path& run_dir) {
     if (elevation)
         for (ProductRaster& product : rasters)
             if (is_of_flow(product.name)) with_untouched(product.raster, *elevation);
-    for (const Parameter& key : parameters())
-        if (is_friction(key.name()) && key.table() == "material.bed") read(key.name(), key.unit, key.meaning);
+    for (const auto& [name, key] : friction_keys()) read(name, key->unit, key->meaning);
     return rasters;
 }
 

@@ -3,9 +3,11 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "observe/observer.h"
+#include "scene/parameters.h"
 #include "scene/scene.h"
 #include "terrain/raster.h"
 
@@ -60,6 +62,8 @@ std::optional<Raster> ever_covered(const std::vector<ProductRaster>& rasters);
 /// The parameters of a friction that differs in space, as the nodes of its bed have them: mu, xi, ...
 std::vector<ProductRaster> friction_rasters(const Friction& friction, const Raster& bed);
 
+/// The names that such rasters can have, "mu", "rheology_viscosity", "water_manning_n", and their keys in a case.
+std::vector<std::pair<std::string, const Parameter*>> friction_keys();
 /// Whether a raster of that name is one of those.
 bool is_friction(const std::string& name);
 

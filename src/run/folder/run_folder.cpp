@@ -13,18 +13,16 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/layer_name.h"
-#include "scene/parameters.h"
+#include "run/folder/products.h"
 
 namespace frana {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// "(mu|xi|...)": rasters of friction have the names of the bed laws' keys.
+/// "(mu|xi|...)"
 static std::string friction_names() {
     std::string names;
-    for (const Parameter& key : parameters())
-        if (key.table() == "material.bed" && key.kind == Kind::number_or_path)
-            names += (names.empty() ? "(" : "|") + key.name();
+    for (const auto& [name, key] : friction_keys()) names += (names.empty() ? "(" : "|") + name;
     return names + ")";
 }
 
