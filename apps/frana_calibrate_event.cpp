@@ -10,6 +10,7 @@
 #include "compare/blocks.h"
 #include "run/folder/comparison.h"
 #include "run/folder/products.h"
+#include "run/folder/release_results.h"
 #include "scene/case_file.h"
 #include "terrain/part_of.h"
 
@@ -34,6 +35,18 @@ Raster around(const EnsembleBase& base) {
     like.geometry = common(united(part, cells_of(points, base.whole)), NodeBox::all(base.whole)).of(base.whole);
     like.crs_wkt = base.bed.crs_wkt;
     return like;
+}
+
+/// Marks on the pixels of a run, which are some of theirs, or more; there 0.
+Raster marks_on(const GridGeometry& grid, const Raster& marks) {
+    Raster here = Raster::filled(grid, 0.0);
+    const GridGeometry& from = marks.geometry;
+    const auto left = static_cast<Index>(std::lround((grid.x0 - from.x0) / grid.cell));
+    const auto low = static_cast<Index>(std::lround((grid.y0 - from.y0) / grid.cell));
+    for (Index j = std::max<Index>(0, -low); j < std::min(grid.ny, from.ny - low); ++j)
+        for (Index i = std::max<Index>(0, -left); i < std::min(grid.nx, from.nx - left); ++i)
+            here.at(i, j) = marks.at(i + left, j + low);
+    return here;
 }
 
 /// Nothing lies where the flow never came.
@@ -64,7 +77,10 @@ EventSurvey::EventSurvey(const SurveyedEvent& event, const EnsembleBase& base)
         if (counts(kind) && file.empty())
             throw lacks(event, key, "the surveyed raster", "name it there, or take it out of the objective");
     std::vector<std::string> remarks;  // the case made them
-    survey_ = read_survey_files(files, around(base), remarks);
+    const Raster like = around(base);
+    survey_ = read_survey_files(files, like, remarks);
+    if (counts(Evidence::bed_change))
+        later_ = may_be_released_later_on(release_sources(CaseFile::read(event.runs.case_file)), like);
     survey_.footprint = *base.footprint;
     perimeter_ = perimeter_of(*base.survey);
     if (!survey_.path && !base.path.empty()) survey_.path = base.path;
@@ -166,9 +182,12 @@ private:
                         found.deposit ? found.deposit->unsurveyed_volume : 0.0);
         }
         const Raster* change = of(rasters, "bed_change");
-        if (event_.counts(Evidence::bed_change) && change)
-            note_blocks(Evidence::bed_change, surface_change(*change, lying, of(rasters, "arrival_time")),
-                        *event_.survey_.bed_change, found.bed_change ? found.bed_change->unsurveyed.all() : 0.0);
+        if (!event_.counts(Evidence::bed_change) || !change) return;
+        std::optional<Raster> later;
+        if (event_.later_) later = marks_on(change->geometry, *event_.later_);
+        note_blocks(Evidence::bed_change,
+                    surface_change(*change, lying, of(rasters, "arrival_time"), later ? &*later : nullptr),
+                    *event_.survey_.bed_change, found.bed_change ? found.bed_change->unsurveyed.all() : 0.0);
     }
 
     /// Where the flow did not come, it counts as just too shallow and too slow to be seen.

@@ -1,6 +1,7 @@
 #pragma once
 // Runs of a surveyed event held against its survey, as `frana compare` does.
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,7 @@ private:
     std::vector<Evidence> objective_;
     std::string crs_wkt_;
     Raster bed_;
+    std::optional<Raster> later_;  ///< 1: a release may enter there after the start
     Survey survey_;
     double limit_ = 0.1;        ///< deeper counts as covered [m]
     double correlation_ = 1.0;  ///< [m]

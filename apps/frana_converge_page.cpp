@@ -37,6 +37,8 @@ const std::vector<Quantity>& quantities() {
         {"footprint_area", "footprint [m2]", "{:.5g}", &F::footprint_area, 1.0, Order::share},
         {"deposit_area", "deposit, area [m2]", "{:.5g}", &F::deposit_area, 1.0, Order::share},
         {"deposit_volume", "deposit, volume [m3]", "{:.5g}", &F::deposit_volume, 1.0, Order::none},
+        {"eroded_volume", "taken of the bed [m3]", "{:.5g}", &F::eroded_volume, 1.0, Order::share},
+        {"deposited_volume", "of the deposit, become bed [m3]", "{:.5g}", &F::deposited_volume, 1.0, Order::none},
         {"peak_depth", "peak depth, 99.9 % [m]", "{:.3g}", &F::peak_depth, 1.0, Order::share},
         {"largest_depth", "peak depth, largest [m]", "{:.3g}", &F::largest_depth, 1.0, Order::none},
         {"peak_speed", "peak speed, 99.9 % [m/s]", "{:.3g}", &F::peak_speed, 1.0, Order::share},
@@ -46,6 +48,15 @@ const std::vector<Quantity>& quantities() {
         {"cells_across", "cells across the flow", "{:.1f}", &F::cells_across, 1.0, Order::none},
         {"wall_seconds", "run time [s]", "{:.3g}", &F::seconds, 1.0, Order::none}};
     return all;
+}
+
+/// Some are of an erodible bed or of deposits alone.
+bool is_known(const Quantity& quantity, const std::vector<CellFigures>& runs) {
+    return std::any_of(runs.begin(), runs.end(),
+                       [&](const CellFigures& run) { return std::isfinite(run.*quantity.value); });
+}
+bool is_of_bed(const Quantity& quantity) {
+    return quantity.value == &CellFigures::eroded_volume || quantity.value == &CellFigures::deposited_volume;
 }
 
 /// On the three finest cells.
@@ -105,7 +116,8 @@ std::string json_of(const ConvergenceStudy& study) {
     json["rule"] = {{"runout_cells", study.rule.runout_cells},
                     {"iou", study.rule.iou},
                     {"deposit_elsewhere", study.rule.elsewhere},
-                    {"peaks", study.rule.peaks}};
+                    {"peaks", study.rule.peaks},
+                    {"eroded_volume", study.rule.eroded}};
     json["converged"] = study.verdict.converged;
     json["enough"] = study.verdict.enough ? Json(*study.verdict.enough) : Json(nullptr);
     json["verdict"] = study.verdict.sentence;
@@ -122,6 +134,7 @@ std::string table_of(const ConvergenceStudy& study) {
     if (orders) head += " order |", rule += "---|";
     std::string text = head + "\n" + rule + "\n";
     for (const Quantity& quantity : quantities()) {
+        if (is_of_bed(quantity) && !is_known(quantity, study.figures)) continue;
         text += fmt::format("| {} |", quantity.name);
         for (const CellFigures& run : study.figures) {
             const double value = run.*quantity.value * quantity.scale;
@@ -197,6 +210,11 @@ ChartFigure chart_of(const ConvergenceStudy& study) {
         panel_of(study, "peak speed [m/s]", {{"99.9 %", &F::peak_speed}, {"largest", &F::largest_speed}}),
         panel_of(study, "share [1]", {{"IoU with the finest", &F::iou}, {"deposit elsewhere", &F::elsewhere}}),
         panel_of(study, "cells across [1]", {{"median width of the flow", &F::cells_across}})};
+    std::vector<std::pair<const char*, double F::*>> of_bed;
+    for (const Quantity& quantity : quantities())
+        if (is_of_bed(quantity) && is_known(quantity, study.figures))
+            of_bed.emplace_back(quantity.value == &F::eroded_volume ? "taken" : "left behind", quantity.value);
+    if (!of_bed.empty()) figure.panels.push_back(panel_of(study, "bed, volume [m3]", of_bed));
     for (ChartPanel& panel : figure.panels)
         if (!panel.y_range) panel.y_range = std::make_pair(0.0, 1.08 * largest_in(panel));
     figure.panels[5].y_range->second = std::max(figure.panels[5].y_range->second, 1.5 * least_cells_across);
@@ -215,7 +233,8 @@ std::string page_of(const ConvergenceStudy& study, bool drawn) {
         fmt::format(
             " The finest cell is held against nothing: where its own error is large, agreement says little.\n\n"
             "The footprint is everything ever deeper than {0:g} m, the deposit's area what is deeper at the end; its "
-            "volume is all that is left. Footprints and deposits are overlaid as their pixels lie. The runout is the "
+            "volume is all that is left. What is taken of the bed is what is missing of it at the end. Footprints and "
+            "deposits are overlaid as their pixels lie. The runout is the "
             "horizontal length along the steepest path on the finest grid, the same for all. Cells across: the flow's "
             "median width, over its length. The order is that of the three finest cells; it is left out where values "
             "go to "

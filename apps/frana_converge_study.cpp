@@ -100,6 +100,10 @@ CellFigures figures_of(const RunFiles& run, const RunFiles& finest, const Path& 
     figures.footprint_area = area_deeper(covered, limit);
     figures.deposit_area = area_deeper(deposit, limit);
     figures.deposit_volume = volume_of(deposit);
+    if (const ProductRaster* eroded = find_product(run.rasters, "eroded_depth"))
+        figures.eroded_volume = volume_of(eroded->raster);
+    if (const ProductRaster* lying = find_product(run.rasters, "deposited_depth"))
+        figures.deposited_volume = volume_of(lying->raster);
     figures.peak_depth = covered_quantile(peak, peak, limit, nearly_all);
     figures.largest_depth = covered_quantile(peak, peak, limit, 1.0);
     figures.peak_speed = covered_quantile(speed, peak, limit, nearly_all);

@@ -218,14 +218,35 @@ TEST_CASE("Samples can come from a table, with weights", "[ensemble]") {
 TEST_CASE("Sparse rasters hold what exceeds a limit, on the pixels of the whole terrain", "[ensemble]") {
     const GridGeometry whole{6, 4, 0.0, 0.0, 2.0}, part{3, 2, 4.0, 2.0, 2.0};  // from node (2, 1) on
     const std::vector<double> depth = {0.5, 0.05, 0.6, NAN, 0.7, 0.8}, speed = {1.0, 2.0, 3.0, 4.0, NAN, 6.0};
-    const SparseRasters sparse = sparse_of({depth.data(), speed.data()}, part, whole, 0.1);
+    const SparseRasters sparse = sparse_of({depth.data(), speed.data()}, depth.data(), part, whole, 0.1);
     CHECK(sparse.pixels() == 4);
     std::vector<Index> pixels;
     sparse.for_each([&](Index pixel, std::size_t) { pixels.push_back(pixel); });
     CHECK(pixels == std::vector<Index>{8, 10, 15, 16});
     CHECK(sparse.values[0] == std::vector<float>{0.5F, 0.6F, 0.7F, 0.8F});
     CHECK(sparse.values[1] == std::vector<float>{1.0F, 3.0F, 0.0F, 6.0F});
-    CHECK_THROWS_AS(sparse_of({depth.data()}, {3, 2, 10.0, 2.0, 2.0}, whole, 0.1), InternalError);
+    // Where the flow was thin, what lies there covers the ground: pixel 9.
+    const std::vector<double> cover = {0.5, 0.15, 0.6, NAN, 0.7, 0.8};
+    const SparseRasters buried = sparse_of({depth.data()}, cover.data(), part, whole, 0.1);
+    CHECK(buried.values[0] == std::vector<float>{0.5F, 0.05F, 0.6F, 0.7F, 0.8F});
+    CHECK_THROWS_AS(sparse_of({depth.data()}, depth.data(), {3, 2, 10.0, 2.0, 2.0}, whole, 0.1), InternalError);
+}
+
+TEST_CASE("Quantiles of a bed that sinks in some runs and rises in others put runs that do not come between",
+          "[ensemble]") {
+    const GridGeometry grid{1, 1, 0.0, 0.0, 1.0};
+    const SparseRasters sinks = row_of(0, {-2.0F}), less = row_of(0, {-1.0F}), rises = row_of(0, {3.0F});
+    SparseRasters none;
+    none.values.resize(1);
+    PixelValues pixels(grid);
+    const PeaksInMemory four({&sinks, &rises, &none, &less});
+    pixels.gather(four, {1.0, 1.0, 1.0, 1.0}, 0);
+    const std::vector<std::pair<double, double>> expected = {{0.25, -2.0}, {0.5, -1.0}, {0.75, 0.0}, {0.95, 3.0}};
+    for (const auto& [share, value] : expected) CHECK(pixels.quantile(share).values[0] == value);
+    const PeaksInMemory two({&sinks, &less});
+    pixels.gather(two, {1.0, 1.0}, 0);
+    CHECK(pixels.quantile(0.95).values[0] == -1.0);
+    CHECK(pixels.mean().values[0] == -1.5);
 }
 
 TEST_CASE("Maps of many runs count weights: above a threshold, below a quantile, on the mean", "[ensemble]") {

@@ -338,12 +338,36 @@ TEST_CASE("Erosion laws give what their papers' numbers say", "[erosion]") {
     CHECK(erosion::Mechanical{0.6, 0.5}.rate(s) == 0.0);
 }
 
+TEST_CASE("A deposit is taken up only by more stress than the law's threshold and what the deposit bears",
+          "[erosion]") {
+    erosion::State s;
+    s.thickness = 2.0, s.speed = 5.0, s.density = 2000.0, s.bed_density = 1600.0, s.dt = 1.0;
+    s.lies = 0.3, s.stress = 900.0;  // below the 1000 Pa of the law
+    CHECK(erosion::Shear{}.rate(s) == 0.0);
+    CHECK(erosion::Jump{}.rate(s) == 0.0);
+    s.stress = 3000.0;  // 0.2 m of the 0.3 m: two thirds of the rate
+    CHECK(erosion::Shear{}.rate(s) == Approx(0.025 * 0.2 / 0.3));
+    s.lies = 0.02, s.dt = 0.1;
+    CHECK(erosion::Shear{}.rate(s) == Approx(0.025));
+    s.eroded = 0.3, s.lies = 1e-3;  // below it the law has taken all that it can: a millimetre in a tenth of a second
+    CHECK(erosion::Shear{}.rate(s) == Approx(0.01));
+    s.eroded = 0.0, s.lies = 0.3, s.bears = 2800.0;
+    CHECK(erosion::Jump{}.rate(s) == Approx(200.0 / (2000.0 * 5.0)));
+    CHECK(erosion::Shear{}.rate(s) == Approx(0.025 * 0.02 / 0.3));
+    s.bears = 3000.0;
+    CHECK(erosion::Jump{}.rate(s) == 0.0);
+    CHECK(erosion::Shear{}.rate(s) == 0.0);
+    s.normal_gravity = 8.0;
+    CHECK(erosion::Mechanical{0.01, 0.5}.rate(s) == 0.0);
+}
+
 TEST_CASE("Erosion laws give four points what they give each", "[erosion]") {
     erosion::StateOf<Double4> four;
     four.thickness = Double4{0.1, 2.0, 0.5, 7.0}, four.speed = Double4{30.0, 5.0, 0.01, 1.0};
     four.stress = Double4{100.0, 3000.0, 900.0, 20000.0}, four.normal_gravity = Double4{8.0, 9.8, 3.0, 9.0};
     four.eroded = Double4{0.0, 0.19, 0.3, 0.05}, four.left = Double4{0.3, 0.0, 1e-9, 2.0};
-    four.edge = Double4{1.0, 2.5, 0.3, 10.0};
+    four.edge = Double4{1.0, 2.5, 0.3, 10.0}, four.lies = Double4{0.0, 0.2, 1e-9, 0.4};
+    four.bears = Double4{0.0, 2000.0, 1000.0, 19000.0};
     four.density = 2000.0, four.bed_density = 1600.0, four.dt = 0.1;
     for (const ErosionLaw& any_law : kLaws)
         std::visit(
@@ -351,9 +375,9 @@ TEST_CASE("Erosion laws give four points what they give each", "[erosion]") {
                 const Double4 rates = law.rate(four);
                 for (int n = 0; n < 4; ++n) {
                     INFO(law.name << ", point " << n);
-                    const erosion::State one{four.thickness[n], four.speed[n], four.stress[n], four.normal_gravity[n],
-                                             four.eroded[n],    four.left[n],  four.edge[n],   four.density,
-                                             four.bed_density,  four.dt};
+                    const erosion::State one{four.thickness[n], four.speed[n], four.stress[n],   four.normal_gravity[n],
+                                             four.eroded[n],    four.left[n],  four.edge[n],     four.lies[n],
+                                             four.bears[n],     four.density,  four.bed_density, four.dt};
                     CHECK(rates[n] == law.rate(one));
                 }
             },

@@ -119,6 +119,21 @@ TEST_CASE("Each part of the rule is asked for", "[refinement]") {
     CHECK_FALSE(converged_with(&CellFigures::runout, NAN));
 }
 
+TEST_CASE("A bed of which one cell takes more than another has not converged", "[refinement]") {
+    std::vector<CellFigures> runs = {run_on(10), run_on(5)};
+    const auto with = [&](double coarse, double fine) {
+        runs[0].eroded_volume = coarse, runs[1].eroded_volume = fine;
+        return judge(runs);
+    };
+    CHECK(with(1099.0, 1000.0).converged);
+    CHECK(with(0.0, 0.0).converged);
+    const Verdict verdict = with(1200.0, 1000.0);
+    CHECK_FALSE(verdict.converged);
+    CHECK_THAT(verdict.sentence,
+               Catch::Contains("the volume taken of the bed differs by 20 % (expected 10 % at most)"));
+    CHECK_FALSE(with(1.0, 0.0).converged);
+}
+
 TEST_CASE("Where no run has a runout the rule goes without, and says so", "[refinement]") {
     std::vector<CellFigures> runs = {run_on(10), run_on(5)};
     runs[0].runout = runs[1].runout = NAN;

@@ -56,6 +56,16 @@ std::optional<Difference> of_runouts(const CellFigures& run, const CellFigures& 
                       fmt::format("{:g} m at most", most)};
 }
 
+/// Nothing where no bed is erodible. A bed that none of the runs took of agrees.
+std::optional<Difference> of_beds(const CellFigures& run, const CellFigures& finest, const ConvergenceRule& rule) {
+    if (std::isnan(run.eroded_volume) && std::isnan(finest.eroded_volume)) return std::nullopt;
+    const double change =
+        run.eroded_volume == finest.eroded_volume ? 0.0 : relative(run.eroded_volume, finest.eroded_volume);
+    return Difference{change <= rule.eroded,
+                      fmt::format("the volume taken of the bed differs by {:.2g} %", 100.0 * change),
+                      fmt::format("{:g} % at most", 100.0 * rule.eroded)};
+}
+
 std::vector<Difference> differences(const CellFigures& run, const CellFigures& finest, const ConvergenceRule& rule) {
     const double depth = relative(run.peak_depth, finest.peak_depth);
     const double speed = relative(run.peak_speed, finest.peak_speed);
@@ -71,6 +81,7 @@ std::vector<Difference> differences(const CellFigures& run, const CellFigures& f
         peak("depth", depth),
         peak("speed", speed)};
     if (const auto runouts = of_runouts(run, finest, rule)) all.insert(all.begin(), *runouts);
+    if (const auto beds = of_beds(run, finest, rule)) all.push_back(*beds);
     return all;
 }
 
@@ -157,9 +168,10 @@ std::string ConvergenceRule::text() const {
     return fmt::format(
         "A cell agrees with the finest one when the runouts differ by {:g} of the coarser cells at most, the "
         "footprints' IoU is {:g} or more, {:g} % of the deposit's volume at most lies elsewhere, and peak depth and "
-        "speed (99.9th percentiles) differ by {:g} % at most. The answer has converged when the last cell but one "
+        "speed (99.9th percentiles) differ by {:g} % at most, and so do volumes taken of an erodible bed by {:g} %. "
+        "The answer has converged when the last cell but one "
         "agrees; enough is the coarsest cell that agrees together with all finer ones.",
-        runout_cells, iou, 100.0 * elsewhere, 100.0 * peaks);
+        runout_cells, iou, 100.0 * elsewhere, 100.0 * peaks, 100.0 * eroded);
 }
 
 double runout_spread(const std::vector<CellFigures>& runs) {

@@ -19,6 +19,8 @@ struct CellFigures {
     double deposit_volume = 0.0;                   ///< [m3]
     double peak_depth = 0.0, largest_depth = 0.0;  ///< 99.9 % of the footprint is less deep, and the maximum [m]
     double peak_speed = 0.0, largest_speed = 0.0;  ///< the same of the speed [m/s]
+    double eroded_volume = Raster::nodata;         ///< missing of the bed at the end; of an erodible one [m3]
+    double deposited_volume = Raster::nodata;      ///< lying behind as bed; where something can [m3]
     double iou = 1.0;                              ///< of its footprint with the finest one
     double elsewhere = 0.0;     ///< share of its deposit's volume that lies elsewhere than the finest one
     double cells_across = 0.0;  ///< the flow's median width
@@ -47,6 +49,7 @@ struct ConvergenceRule {
     double iou = 0.9;           ///< of the footprints, at least
     double elsewhere = 0.1;     ///< of the deposit's volume, at most
     double peaks = 0.05;        ///< 99.9th percentiles of depth and speed differ by at most this share
+    double eroded = 0.1;        ///< volumes taken of an erodible bed differ by at most this share
     std::string text() const;   ///< for people
 };
 

@@ -213,7 +213,10 @@ const std::vector<PeakField>& peak_fields() {
                                                   {"peak_speed", "m/s", "peak speed"},
                                                   {"peak_pressure", "Pa", "peak pressure on the bed"},
                                                   {"peak_dynamic_pressure", "Pa", "peak dynamic pressure"},
-                                                  {"arrival_time", "s", "time of arrival", true}};
+                                                  {"arrival_time", "s", "time of arrival", true},
+                                                  {"eroded_depth", "m", "depth taken of the bed", false, true},
+                                                  {"deposited_depth", "m", "depth left behind as bed", false, true},
+                                                  {"bed_change", "m", "change of the bed, up", false, true}};
     return fields;
 }
 

@@ -51,6 +51,7 @@ struct EnsemblePlan {
 struct PeakField {
     const char *name, *unit, *meaning;
     bool is_time = false;  ///< of arrival: there is none where a run never came
+    bool of_bed = false;   ///< of a bed that changes; 0 in runs whose bed does not
 };
 const std::vector<PeakField>& peak_fields();
 /// The one of that name; InternalError without it.

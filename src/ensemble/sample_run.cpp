@@ -74,28 +74,28 @@ void measure_extent(const EnsembleBase& base, const Raster& depth, SampleResult&
 void measure(const Scene& scene, const EnsembleBase& base, const RunSummary& run, const LastPeaks& peaks,
              SampleResult& result) {
     if (peaks.values.empty()) return;
-    std::vector<const double*> fields;
-    for (const auto& field : peaks.values) fields.push_back(field.data());
-    result.peaks = sparse_of(fields, peaks.grid, base.whole, base.footprint_depth);
-    const double cell = base.whole.cell;
-    result.footprint_area = static_cast<double>(result.peaks.pixels()) * cell * cell;
-    result.max_depth = run.extremes.max_depth, result.max_speed = run.extremes.max_speed;
-    const Status& last = run.last;
-    const double flowed =
-        run.first.mass + mass_came_in(run.first, last) + taken_of_bed(scene, peaks.grid, peaks.eroded);
-    result.volume = flowed / scene.density;
-    result.left_share = flowed > 0.0 ? last.mass_left / flowed : 0.0;
-    result.mass_error = budget(run.first, last).mass_error;
     Raster depth;
     depth.geometry = peaks.grid, depth.values = peaks.values.front();
     if (!peaks.lying.empty()) {
         Raster lying = depth;
         lying.values = peaks.lying;
         depth = deepest_cover(depth, lying);
-        const auto wet = std::count_if(depth.values.begin(), depth.values.end(),
-                                       [&](double value) { return value > base.footprint_depth; });
-        result.footprint_area = static_cast<double>(wet) * cell * cell;
     }
+    std::vector<const double*> fields;
+    for (const auto& field : peaks.values) fields.push_back(field.data());
+    result.peaks = sparse_of(fields, depth.values.data(), peaks.grid, base.whole, base.footprint_depth);
+    const double cell = base.whole.cell;
+    result.footprint_area = static_cast<double>(result.peaks.pixels()) * cell * cell;
+    result.max_depth = run.extremes.max_depth, result.max_speed = run.extremes.max_speed;
+    const Status& last = run.last;
+    const double taken = taken_of_bed(scene, peaks.grid, peaks.eroded);
+    const double flowed = run.first.mass + mass_came_in(run.first, last) + taken;
+    if (scene.erodible) result.eroded = taken / scene.erodible->density;
+    const double taken_again = last.bed.eroded - taken;  // of what was left behind
+    if (last.bed.deposited > 0.0) result.deposited = std::max(0.0, last.bed.deposited - taken_again) / scene.density;
+    result.volume = flowed / scene.density;
+    result.left_share = flowed > 0.0 ? last.mass_left / flowed : 0.0;
+    result.mass_error = budget(run.first, last).mass_error;
     measure_extent(base, depth, result);
 }
 
@@ -145,6 +145,7 @@ EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, co
     base.title = scene.title;
     base.footprint_depth = scene.output.footprint_depth;
     base.gauges = scene.gauges;
+    base.bed_changes = scene.bed_changes();
     base.barriers = scene.barriers;
     base.start = flow_start(scene);
     if (base.start) base.path = steepest_path(scene.bed, *base.start);

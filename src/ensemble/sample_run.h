@@ -24,6 +24,7 @@ struct EnsembleBase {
     std::optional<Vec2> start;          ///< the middle of the releases
     std::optional<Polygons> footprint;  ///< surveyed, where the case has one
     std::optional<Rings> survey;        ///< its rings
+    bool bed_changes = false;           ///< it is erodible, or something can be left behind
     std::vector<Gauge> gauges;          ///< of the case
     std::vector<Barrier> barriers;      ///< of the case, which maps show
     Polyline path;                      ///< that all runouts are measured along; empty: none is known
@@ -48,13 +49,14 @@ struct SampleResult {
     double reach = 0.0;                       ///< straight from the start [m]
     double footprint_area = 0.0;              ///< [m2]
     double max_depth = 0.0, max_speed = 0.0;  ///< [m], [m/s]
+    double eroded = 0.0, deposited = 0.0;     ///< missing of the bed at the end, and lying behind as bed [m3]
     double left_share = 0.0;                  ///< of the mass, that left the terrain [1]
     double mass_error = 0.0;                  ///< of the budget, relative [1]
     bool still_moves = false;                 ///< RunSummary's
     std::optional<double> iou;                ///< of the footprint with the surveyed one, where there is one [1]
     std::optional<double> boundary;           ///< mean distance of their outlines; nothing where nothing flowed [m]
     std::vector<GaugePeak> gauges;            ///< of the base's
-    SparseRasters peaks;                      ///< the plan's fields where peak_depth exceeds the footprint depth
+    SparseRasters peaks;  ///< the plan's fields where the ground was covered, by flow or by what lies there
 
     /// The run has an answer: it came to an end of its own or to time.end.
     bool ended() const { return reason == "end" || reason == "rest" || reason == "left"; }

@@ -97,14 +97,27 @@ void PixelValues::for_each_quantile(const std::vector<double>& shares,
     }
 }
 
-/// Of values that descend: what exceeds a value may be at most 1 - share.
+/// Of values that descend: what exceeds a value may be at most 1 - share. Runs that did not come have 0, which lies between
+/// a rise of the bed and its fall.
 double PixelValues::quantile_of(const std::vector<Value>& sorted, double share) const {
+    const double most = (1.0 - share) * weight_ * (1.0 + kRoundOff);
     double above = 0.0;
+    bool past_zero = false;
     for (const Value& v : sorted) {
+        if (v.value < 0.0F && !past_zero) {
+            past_zero = true, above += weight_of_others(sorted);
+            if (above > most) return 0.0;
+        }
         above += weight_of(v);
-        if (above > (1.0 - share) * weight_ * (1.0 + kRoundOff)) return static_cast<double>(v.value);
+        if (above > most) return static_cast<double>(v.value);
     }
-    return 0.0;
+    return past_zero ? static_cast<double>(sorted.back().value) : 0.0;
+}
+
+double PixelValues::weight_of_others(const std::vector<Value>& some) const {
+    double sum = 0.0;
+    for (const Value& v : some) sum += weight_of(v);
+    return sum < weight_ * (1.0 - kRoundOff) ? weight_ - sum : 0.0;
 }
 
 Raster PixelValues::arrival_quantile(double q) const {

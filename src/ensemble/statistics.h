@@ -81,6 +81,7 @@ private:
     template <class Body>
     Raster of_each(Body&& body) const;
     double quantile_of(const std::vector<Value>& sorted, double share) const;
+    double weight_of_others(const std::vector<Value>& some) const;
     double weight_of(const Value& value) const { return weights_[value.run]; }
 
     GridGeometry grid_;

@@ -24,7 +24,7 @@ constexpr double part_node_rate = 160.0;
 /// and three: 1630 and 2440 MB in all.
 constexpr double structure_rate = 75.0, water_rate = 200.0;
 /// Likewise of an erodible bed: seven numbers with its depth, two more where the bed's smoothing follows.
-constexpr double erodible_rate = 56.0, path_rate = 16.0, deposition_rate = 16.0, forest_rate = 16.0;
+constexpr double erodible_rate = 56.0, path_rate = 16.0, deposition_rate = 16.0, forest_rate = 16.0, raised_rate = 8.0;
 constexpr double graphics_need = 350e6;  ///< besides, for pictures: software OpenGL, 290 to 420 MB
 
 /// A 3D grid has an entry for each of its tiles, and storage of those that are reached only.
@@ -92,7 +92,7 @@ double memory_of_fields_among_barriers(const Scene& scene, double nodes) {
 double memory_of_fields(const Scene& scene, double nodes) {
     double bytes = 0.0;
     if (scene.bed_changes()) bytes += (scene.bed_evolves() ? erodible_rate + path_rate : erodible_rate) * nodes;
-    if (scene.deposition || scene.forest) bytes += deposition_rate * nodes;
+    if (scene.deposition || scene.forest) bytes += (deposition_rate + (scene.erodible ? raised_rate : 0.0)) * nodes;
     if (scene.forest) bytes += forest_rate * nodes;
     if (scene.friction) bytes += memory_of(*scene.friction, nodes);
     if (!scene.barriers.empty() && !scene.solid) bytes += memory_of_fields_among_barriers(scene, nodes);

@@ -8,7 +8,7 @@ void add_deposition(Table& table) {
     const char* const law = "deposition.law";
     table.push_back(choice(
         law, {"none", "rest"}, "none",
-        "how the flow becomes bed. rest: particles that do not move, where friction has held the flow for `time`"));
+        "how the flow becomes bed. rest: particles that creep at most, where the flow has been as slow for `time`"));
     table.push_back(
         with(number("deposition.time", "s", not_negative, 10.0,
                     "at rest, after which material becomes bed; later flow runs over it as over other ground"),

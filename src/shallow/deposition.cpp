@@ -18,11 +18,12 @@ bool ends_stretch(const Clock& now, double stretch) {
     return !(stretch > 0.0) || std::floor(now.time / stretch) != std::floor((now.time - now.dt) / stretch);
 }
 
+/// Whether a point is no faster than `slowest` [m/s], and a cell of `cell` [m] beside it neither.
 template <class Real>
-bool is_still(const Carried<Real>& held, Index p) {
-    for (const auto* column : {&held.vx, &held.vy, &held.cxx, &held.cxy, &held.cyx, &held.cyy})
-        if ((*column)[p] != Real{0}) return false;
-    return true;
+bool is_still(const Carried<Real>& held, Index p, double slowest, double cell) {
+    for (const auto* column : {&held.cxx, &held.cxy, &held.cyx, &held.cyy})
+        if (!(cell * std::abs(double{(*column)[p]}) <= slowest)) return false;
+    return std::hypot(double{held.vx[p]}, double{held.vy[p]}) <= slowest;
 }
 
 }  // namespace
@@ -33,19 +34,47 @@ void Erosion::prepare_deposition(const Scene& scene, const Flow& flow) {
     fresh_ = LazyArray<double>(flow.grid.size());
     ledger_tiles_.reserve(static_cast<std::size_t>(flow.grid.tiles()));  // steps allocate nothing
     if (scene.deposition) rest_time_ = scene.deposition->rest;
-    if (rest_time_) clocks_ = RestClocks(flow.grid);
+    raised_tiles_.reserve(2 * static_cast<std::size_t>(flow.grid.tiles()));  // what rests, and what trees take
+    if (takes_) raised_ = LazyArray<double>(flow.grid.size());
+    if (!rest_time_) return;
+    clocks_ = RestClocks(flow.grid);
+    rest_fraction_ = scene.rest_fraction;
 }
 
-bool Erosion::settle(Flow& flow, const Clock& now) {
-    if (!rest_time_) return false;
-    clocks_.tick(flow, now.dt);
-    if (!ends_stretch(now, *rest_time_ / kLooks) || !find_settled(flow)) return false;
+std::optional<ExchangeSums> Erosion::settle(Flow& flow, const Status& now) {
+    unmark_raised(flow), raised_tiles_.clear();
+    if (!rest_time_) return {};
+    note_slowest(flow, now);
+    clocks_.tick(flow, now.dt, slowest_);
+    if (!ends_stretch(now, *rest_time_ / kLooks) || !find_settled(flow)) return {};
     give(flow);
     for (const Index tile : next_)  // whose slopes or smoothed bed have changed
         for_each_around(flow.grid, tile, [&](Index to) {
             if (flow.active.in_work[to]) wake(flow, to);
         });
-    return true;
+    ExchangeSums all;
+    for (Index n = 0; n < flow.active.count(); ++n) {
+        if (!eroding_[static_cast<std::size_t>(n)]) continue;
+        const ExchangeSums& of = sums_[static_cast<std::size_t>(n)];
+        all.taken += of.taken, all.px += of.px, all.py += of.py, all.lost += of.lost;
+    }
+    return all;
+}
+
+/// THEORY.md, section 20. As the rest of a run (63), of which the first two are; and it goes no tenth of a cell while it has to rest.
+void Erosion::note_slowest(const Flow& flow, const Status& now) {
+    constexpr double kOfCell = 0.1;
+    const double became_bed = std::max(0.0, now.bed.deposited - now.bed.eroded), all = now.mass + became_bed;
+    if (all > 0.0) peak_mean_speed_ = std::max(peak_mean_speed_, now.mean_speed * now.mass / all);
+    slowest_ = rest_fraction_ * peak_mean_speed_;
+    if (now.time > 0.0) slowest_ = std::min(slowest_, 2.0 * flow.cell / now.time);
+    if (*rest_time_ > 0.0) slowest_ = std::min(slowest_, kOfCell * flow.cell / *rest_time_);
+}
+
+/// Those may give again.
+void Erosion::unmark_raised(const Flow& flow) {
+    for (const Index tile : raised_tiles_)
+        if (raised_) for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) { raised_[k] = 0.0; });
 }
 
 /// Which points give all that they have, and their tiles.
@@ -66,13 +95,22 @@ bool Erosion::find_settled(Flow& flow) {
 
 template <class Real>
 bool Erosion::choose_settled(const Flow& flow, Index n) {
+    const Carried<Real>& held = flow.columns.carried<Real>();
+    ExchangeSums sums;
     bool any = false;
     for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
-        const bool settles = is_still(flow.columns.carried<Real>(), p) && lies_on_rest<Real>(flow, p);
+        const bool settles = is_still(held, p, slowest_, flow.cell) && lies_on_rest<Real>(flow, p);
         wanted_[p] = settles ? flow.columns.mass[p] : 0.0;
         gone_[static_cast<std::size_t>(p)] = settles;
         any = any || settles;
+        if (!settles) continue;
+        const Index k = flow.grid.nearest(flow.columns.x[p], flow.columns.y[p]);
+        const double mass = wanted_[p], vx = held.vx[p], vy = held.vy[p];
+        const double rise = flow.steep ? vx * flow.bed.slope_x[k] + vy * flow.bed.slope_y[k] : 0.0;
+        sums.taken -= mass, sums.px -= mass * vx, sums.py -= mass * vy;
+        sums.lost += 0.5 * mass * (vx * vx + vy * vy + rise * rise);
     }
+    sums_[static_cast<std::size_t>(n)] = sums;
     return any;
 }
 
@@ -109,7 +147,9 @@ void Erosion::give(Flow& flow) {
     for_each_in_parallel(nodes_, [&](Index tile) { raise_tile(flow, tile); });
     for (const Index tile : nodes_) {
         energy_.add(tile_energy_[tile]);
-        if (marked_[static_cast<std::size_t>(tile)]) list_ledger(tile);
+        if (!marked_[static_cast<std::size_t>(tile)]) continue;
+        list_ledger(tile);
+        raised_tiles_.push_back(tile);
     }
     follow_bed(flow);
     status_changed();
@@ -136,6 +176,7 @@ void Erosion::raise_tile(Flow& flow, Index tile) {
         const double rises = given * per_area_of_flow_;
         energy -= flow.share(i, j) * flow.gravity * given * (flow.bed.z[k] + 0.5 * rises);
         fresh_[k] += given;
+        if (raised_) raised_[k] = 1.0;
         flow.bed.z[k] += rises;
         flow.bed.ground[k] += rises;
         if (bent_path_) pending_[k] += rises;
@@ -159,7 +200,9 @@ void Erosion::list_ledger(Index tile) {
 void Erosion::serialize_deposition(Archive& archive, const Flow& flow) {
     const auto deposited = deposited_.parts();
     archive.numbers("deposited", {deposited[0], deposited[1]});
-    if (rest_time_) clocks_.serialize(archive, flow);
+    if (!rest_time_) return;
+    archive.numbers("slow", {&peak_mean_speed_});
+    clocks_.serialize(archive, flow);
 }
 
 }  // namespace frana

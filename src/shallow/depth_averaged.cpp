@@ -220,6 +220,7 @@ void DepthAveraged::arrive(const PointSums& points) {
         put_peaks_aside();
         const FlowSpeeds all = update_peaks(flow_, steep_, curved_, status_.time, footprint_depth_, peaks_);
         put_peaks_back();
+        if (erosion_) note_buried();
         return all;
     });
     status_.max_speed = speeds.fastest, status_.mean_speed = speeds.mean;

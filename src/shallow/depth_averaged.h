@@ -118,6 +118,7 @@ private:
     void erode(double dt);
     void detrain(double dt);
     void settle();
+    void note_buried();
     void take_rows();
     std::vector<Index> tiles_of_a_step() const;
     void enter_late();

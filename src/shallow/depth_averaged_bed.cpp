@@ -14,11 +14,32 @@ void DepthAveraged::detrain(double dt) {
     status_.bed = erosion_->status();
 }
 
-/// Points that have become bed are gone.
+/// Points that have become bed are gone. The bed stops what they crept with.
 void DepthAveraged::settle() {
-    if (!erosion_->settle(flow_, status_)) return;
+    const std::optional<ExchangeSums> sums = erosion_->settle(flow_, status_);
+    if (!sums) return;
+    status_.dissipated += sums->lost;
+    status_.impulse[0] += sums->px;
+    status_.impulse[1] += sums->py;
     sorter_.drop(flow_.columns, erosion_->gone(), flow_.active);
     status_.bed = erosion_->status();
+}
+
+/// Ground that no flow was deep on may have been buried by what thin flows left.
+void DepthAveraged::note_buried() {
+    if (!erosion_->deposits()) return;
+    const auto note = [&](Index k, double depth) {
+        if (peaks_.depth[k] > footprint_depth_ || peaks_.arrival[k] > 0.0) return;
+        if (depth + erosion_->deposited_depth(k) > footprint_depth_) peaks_.arrival[k] = status_.time;
+    };
+    for_each_work_tile(flow_.active, [&](Index, Index tile) {
+        if (!erosion_->has_changed(tile)) return;
+        for_each_node_of(flow_.grid, tile, flow_.in_reach[tile], [&](Index k, Index, Index) { note(k, own_depth(k)); });
+    });
+    for (const Index tile : erosion_->raised_tiles())  // where all of the flow may have gone
+        for_each_node_of(flow_.grid, tile, [&](Index k, Index i, Index j) {
+            if (!flow_.is_in_reach(i, j)) note(k, 0.0);
+        });
 }
 
 }  // namespace frana

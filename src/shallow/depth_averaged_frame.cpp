@@ -226,7 +226,7 @@ double DepthAveraged::node_fields(Frame& frame) {
         peak_speed[n] = peaks_.speed[k];
         peak_pressure[n] = peaks_.pressure[k];
         peak_dynamic[n] = peaks_.dynamic_pressure[k];
-        arrival[n] = peaks_.depth[k] > footprint_depth_ ? peaks_.arrival[k] : -1.0;
+        arrival[n] = peaks_.arrival_time(k, footprint_depth_);
     });
     const Motion* motions = flow_.nodes.motions();
     double fastest = 0.0;

@@ -180,7 +180,7 @@ void Erosion::count_tile(const Flow& flow, Index tile) {
     for_each_four_of(flow.grid, tile, kAllGroups, [&](Index k, Index i, Index j) {
         const Double4 left = load(&left_[k]), none = {};
         mass.add(shares_of_four(flow, i, j) * (deposits_ ? left + load(&fresh_[k]) : left));
-        holds |= can_give<Double4>(k) > none;
+        holds |= there_is<Double4>(k) > none;
         deepest = max(deepest, (load(&initial_[k]) - left) * per_area_);
     });
     tile_mass_[tile] = mass.value(), holds_[tile] = any(holds), tile_deepest_[tile] = largest(deepest);
@@ -201,13 +201,21 @@ Status::Bed Erosion::status() const {
     return {initial_mass_, mass_, eroded_.value(), deposited_.value(), energy_.value(), deepest_};
 }
 
-/// What a node, or four, can give at most, less than nothing where only a crumb is left [kg].
+/// What a node, or four, has to give, less than nothing where only a crumb is left [kg].
 template <class Real>
-Real Erosion::can_give(Index k) const {
+Real Erosion::there_is(Index k) const {
     const Real old = read<Real>(&left_[k]) - kCrumb * read<Real>(&initial_[k]), none = {};
     if (!deposits_) return old;
     const Real lies = read<Real>(&fresh_[k]);
     return select(lies > none, old + (lies - fresh_crumb_), old);
+}
+
+/// The same in this step: where something has just come to rest, nothing is taken.
+template <class Real>
+Real Erosion::can_give(Index k) const {
+    const Real all = there_is<Real>(k), none = {};
+    if (raised_tiles_.empty() || !raised_) return all;
+    return select(read<Real>(&raised_[k]) > none, none, all);
 }
 
 ExchangeSums Erosion::exchange(Flow& flow, double dt) {
@@ -226,6 +234,7 @@ ExchangeSums Erosion::exchange(Flow& flow, double dt) {
         taken.add(of.taken), all.px += of.px, all.py += of.py, all.lost += of.lost;
         all.max_shift = std::max(all.max_shift, of.max_shift);
     }
+    unmark_raised(flow);
     for (const Index tile : nodes_) energy_.add(tile_energy_[tile]);
     all.taken = taken.value();
     eroded_.add(all.taken);
@@ -269,7 +278,7 @@ void Erosion::find_demand(Flow& flow, double dt) {
             const auto demand = [&](const auto& law, const auto& friction) {
                 using Law = std::decay_t<decltype(law)>;
                 using Under = std::decay_t<decltype(friction)>;
-                if constexpr (Law::kSeesEroded || Law::kSeesLeft)
+                if constexpr (Law::kSeesEroded || Law::kSeesLeft || Law::kSeesStress)
                     if (deposits_) return demand_of_tile<Law, Under, Real, true>(flow, n, dt, law, friction);
                 demand_of_tile<Law, Under, Real, false>(flow, n, dt, law, friction);
             };
@@ -288,13 +297,28 @@ void Erosion::find_demand(Flow& flow, double dt) {
 /// been left behind, that a law has not taken yet.
 template <class Law, bool kFresh>
 void Erosion::see_layer(const MeansOfFour& means, Double4 cosine, erosion::StateOf<Double4>& state) const {
+    if constexpr (kFresh) state.lies = per_area_of_flow_ * cosine * means.of(fresh_);
     if constexpr (!Law::kSeesEroded && !Law::kSeesLeft) return;
     const Double4 still = means.of(left_), scale = per_area_ * cosine;
-    Double4 lies = {};
-    if constexpr (kFresh) lies = per_area_of_flow_ * cosine * means.of(fresh_);
-    if constexpr (Law::kSeesEroded) state.eroded = scale * (means.of(initial_) - still) - lies;
-    if constexpr (Law::kSeesLeft) state.left = scale * still + lies;
+    if constexpr (Law::kSeesEroded) state.eroded = scale * (means.of(initial_) - still);
+    if constexpr (Law::kSeesLeft) state.left = scale * still + state.lies;
 }
+
+namespace {
+
+/// THEORY.md, section 20: what deposits below four points bear [Pa]: friction at rest has held them. The speed is along the map. A
+/// thin layer bears less: what lies below it is felt.
+template <class Law>
+Double4 strengths(const Law& law, const BedStateOf<Double4>& bed, Double4 speed, const erosion::StateOf<Double4>& s) {
+    constexpr double kCreep = 0.01;     // [m/s]; what of the friction grows with the speed is nothing yet
+    constexpr double kRounding = 1e-6;  // where friction does not hang on the speed, nothing is left above it
+    constexpr double kThinnest = 0.01;  // of the flow, from which on a deposit bears all
+    const Double4 one = all(1.0), held = decelerations(law, bed, min(speed, all(kCreep)));
+    const Double4 covers = min(s.lies / (kThinnest * s.thickness), one);
+    return (1.0 + kRounding) * s.density * s.thickness * bed.kappa * covers * held;
+}
+
+}  // namespace
 
 /// Velocities are those of the step's momentum over the mass before it (leapfrog). In the middle of the step, where the
 /// way and the law are taken, half of the gain shares it: such points have come too far, and are set back.
@@ -303,11 +327,12 @@ void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, con
     Columns& c = flow.columns;
     const Carried<Real>& held = c.carried<Real>();
     const bool feels = Law::kSeesStress || momentum_ > 0.0;
+    const double slowest = std::max(kSlowest, slowest_);
     Double4 farthest = {};
     for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
         const Double4 depth = load(&held.depth[p], lanes), none = {}, one = all(1.0);
         const Double4 vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes), on_map = sqrt(vx * vx + vy * vy);
-        const Mask4 moves = (on_map > kSlowest) & (depth >= min_depth_) & (depth > flow.dry_depth());
+        const Mask4 moves = (on_map > slowest) & (depth >= min_depth_) & (depth > flow.dry_depth());
         if (!any(moves)) return store(&wanted_[p], none, lanes);
         const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes), mass = load(&c.mass[p], lanes);
         const MeansOfFour means(flow.grid, x, y);
@@ -329,6 +354,8 @@ void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, con
             if (feels) brake = decelerations(below, ground.below, at_middle * u);
             state.speed = at_middle * ground.speed;
             state.stress = flow.density * state.thickness * ground.below.kappa * brake;
+            if constexpr (Law::kSeesStress && kFresh)
+                if (any(state.lies > none)) state.bears = strengths(below, ground.below, at_middle * u, state);
             gain = select(moves, wanted_shares(law, state, middle), none);
         }
         store(&wanted_[p], gain * mass, lanes);

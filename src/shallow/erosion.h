@@ -36,10 +36,10 @@ public:
 
     /// Points gain, the bed loses, in a step of `dt` [s]; after the gather and the sort, before the deposit.
     ExchangeSums exchange(Flow& flow, double dt);
-    /// In the step that `now` has ended, points that have been at rest for long enough become bed: whether any did. After the
-    /// gather, before anything comes in or points are sorted. The caller drops those marked in gone(). They move not, so
-    /// nothing but mass goes with them.
-    bool settle(Flow& flow, const Clock& now);
+    /// In the step that `now` has ended, points that have been at rest for long enough become bed: what the flow got by it,
+    /// below zero, or nothing where none did. After the gather, before anything comes in or points are sorted. The caller
+    /// drops those marked in gone().
+    std::optional<ExchangeSums> settle(Flow& flow, const Status& now);
     const std::vector<std::uint8_t>& gone() const { return gone_; }
     /// What trees take of the flow in a step of `dt` [s]; after the exchange, before the deposit. Sums are those of the flow:
     /// below zero. Where any_gone(), the caller drops the points marked in gone().
@@ -54,6 +54,11 @@ public:
     double left(Index k) const { return left_[k]; }                                      ///< of the original bed [kg]
     double fresh(Index k) const { return deposits_ ? fresh_[k] : 0.0; }                  ///< deposit on top of it [kg]
     bool evolves() const { return evolves_; }
+    bool deposits() const { return deposits_; }
+    /// Something there is no more as the scene has it.
+    bool has_changed(Index tile) const { return changed_[tile] != 0; }
+    /// Those with nodes that have got a deposit in this step.
+    const std::vector<Index>& raised_tiles() const { return raised_tiles_; }
     /// The ledger, and the bed where it has changed; aside those that a step may change, which reaches the tiles `reached`.
     void serialize(Archive& archive, Flow& flow, const std::vector<Index>& reached);
     /// Ledger and bed of a run on a part of this grid; its node (0, 0) is (east, north) here.
@@ -79,8 +84,12 @@ private:
     void return_part(Flow& flow, Index p, double got) const;
     Double4 speeds_left(Double4 gain, Double4 braked) const;
     template <class Real>
+    Real there_is(Index k) const;
+    template <class Real>
     Real can_give(Index k) const;
     void prepare_deposition(const Scene& scene, const Flow& flow);
+    void note_slowest(const Flow& flow, const Status& now);
+    void unmark_raised(const Flow& flow);
     bool find_settled(Flow& flow);
     template <class Real>
     bool choose_settled(const Flow& flow, Index n);
@@ -146,6 +155,11 @@ private:
     std::optional<double> rest_time_;  ///< after which what rests becomes bed [s]; nothing: never
     LazyArray<double> fresh_;          ///< deposit, of the flow's density [kg]
     RestClocks clocks_;                ///< when there is such a time
+    double rest_fraction_ = 0.0;       ///< time.rest_fraction
+    double peak_mean_speed_ = 0.0;     ///< of all that was released, so far [m/s]
+    double slowest_ = 0.0;             ///< what is no faster rests, and takes nothing [m/s]
+    LazyArray<double> raised_;         ///< 1: has got a deposit in this step, and gives nothing; else 0
+    std::vector<Index> raised_tiles_;  ///< that have such nodes, some twice
     std::vector<std::uint8_t> gone_;   ///< points that have become bed
 
     Detrainment forest_;

@@ -49,7 +49,8 @@ FlowSpeeds update_peaks(Flow& flow, bool steep, bool curved, double time, double
             if (!any(h > 0.0)) return;
             if (any((h > footprint_depth) & (load(&peaks.depth[k]) <= footprint_depth)))
                 for (Index m = k; m < k + 4; ++m)
-                    if (flow.nodes.depth[m] > footprint_depth && !(peaks.depth[m] > footprint_depth))
+                    if (flow.nodes.depth[m] > footprint_depth && !(peaks.depth[m] > footprint_depth) &&
+                        !(peaks.arrival[m] > 0.0))  // not buried before by what thinner flows left
                         peaks.arrival[m] = time;
             Double4 vx, vy;
             unzip(&flow.nodes.before[k], vx, vy);

@@ -9,7 +9,13 @@ struct Peaks {
     LazyArray<double> speed;     ///< along the smoothed bed, where deeper than a tenth of the footprint depth [m/s]
     LazyArray<double> pressure;  ///< on the bed, normal [Pa]
     LazyArray<double> dynamic_pressure;  ///< rho |V|^2, same nodes as speed [Pa]
-    LazyArray<double> arrival;           ///< first time deeper than the footprint depth; valid where depth is [s]
+    LazyArray<double>
+        arrival;  ///< first time of flow and deposit deeper than the footprint depth; 0 before, or of the start [s]
+
+    /// The time of arrival on a node [s]; -1 where nothing was ever deeper than the footprint depth [m].
+    double arrival_time(Index k, double footprint_depth) const {
+        return depth[k] > footprint_depth || arrival[k] > 0.0 ? arrival[k] : -1.0;
+    }
 
     explicit Peaks(const TileGrid& grid)
         : depth(grid.size()),

@@ -11,20 +11,22 @@ RestClocks::RestClocks(const TileGrid& grid) : rested_(grid.size()), longest_(gr
     tiles_.reserve(static_cast<std::size_t>(grid.tiles()));  // steps allocate nothing
 }
 
-void RestClocks::tick(const Flow& flow, double dt) {
+void RestClocks::tick(const Flow& flow, double dt, double slowest) {
     for (const Index tile : tiles_)
         if (!flow.active.in_work[tile]) stop(flow.grid, tile, std::exchange(known_[tile], 0)), longest_[tile] = 0.0;
     tiles_.assign(flow.active.work.begin(), flow.active.work.end());
-    for_each_work_tile(flow.active, [&](Index, Index tile) { tick_tile(flow, tile, dt); });
+    for_each_work_tile(flow.active, [&](Index, Index tile) { tick_tile(flow, tile, dt, slowest); });
 }
 
-void RestClocks::tick_tile(const Flow& flow, Index tile, double dt) {
+void RestClocks::tick_tile(const Flow& flow, Index tile, double dt, double slowest) {
     const NodeGroups in_reach = flow.in_reach[tile];
     stop(flow.grid, tile, std::exchange(known_[tile], in_reach) & ~in_reach);
     double longest = 0.0;
     for_each_node_of(flow.grid, tile, in_reach, [&](Index k, Index, Index) {
         const Motion& after = flow.nodes.motions()[k];
-        const bool rests = flow.nodes.column_mass[k] > 0.0 && after.vx == 0.0 && after.vy == 0.0;
+        const double speed2 = after.vx * after.vx + after.vy * after.vy;
+        const bool still = after.vx == 0.0 && after.vy == 0.0;  // squares of the smallest speeds are 0
+        const bool rests = flow.nodes.column_mass[k] > 0.0 && (still || speed2 < slowest * slowest);
         rested_[k] = rests ? rested_[k] + dt : 0.0;
         longest = std::max(longest, rested_[k]);
     });

@@ -7,15 +7,16 @@
 
 namespace frana {
 
-/// A node rests in a step when material lies on it and the grid update left it no velocity: friction holds it, whatever comes
-/// in from what moves next to it. Clocks run for nodes in reach; elsewhere they stand at 0.
+/// A node rests in a step when material lies on it and the grid update left it no more velocity than counts as rest, whatever
+/// comes in from what moves next to it. Clocks run for nodes in reach; elsewhere they stand at 0.
 class RestClocks {
 public:
     RestClocks() = default;
     explicit RestClocks(const TileGrid& grid);
 
-    /// After the gather of a step of `dt` [s], while the nodes are those of the deposit before it.
-    void tick(const Flow& flow, double dt);
+    /// After the gather of a step of `dt` [s], while the nodes are those of the deposit before it. What is no faster than
+    /// `slowest` [m/s] rests.
+    void tick(const Flow& flow, double dt, double slowest);
     /// Whether a node has rested for `time` [s], one step at least.
     bool have_run(Index k, double time) const { return rested_[k] > 0.0 && rested_[k] >= time; }
     /// The same for some node of a tile.
@@ -26,7 +27,7 @@ public:
     void take_over(const RestClocks& from, const TileGrid& part, const TileGrid& grid, Index east, Index north);
 
 private:
-    void tick_tile(const Flow& flow, Index tile, double dt);
+    void tick_tile(const Flow& flow, Index tile, double dt, double slowest);
     void stop(const TileGrid& grid, Index tile, NodeGroups groups);
     void stop_all(const TileGrid& grid);
 

@@ -12,8 +12,8 @@ Index SparseRasters::pixels() const {
     return sum;
 }
 
-SparseRasters sparse_of(const std::vector<const double*>& fields, const GridGeometry& part, const GridGeometry& whole,
-                        double above) {
+SparseRasters sparse_of(const std::vector<const double*>& fields, const double* cover, const GridGeometry& part,
+                        const GridGeometry& whole, double above) {
     const NodeBox box = box_of(part, whole).value_or(NodeBox{-1, -1, 0, 0});
     expect(box.i0 >= 0 && box.j0 >= 0 && box.i0 + box.nx <= whole.nx && box.j0 + box.ny <= whole.ny,
            "a part lies within the whole grid");
@@ -22,7 +22,7 @@ SparseRasters sparse_of(const std::vector<const double*>& fields, const GridGeom
     for (Index j = 0; j < part.ny; ++j)
         for (Index i = 0; i < part.nx; ++i) {
             const Index from = j * part.nx + i;
-            if (!(fields.front()[from] > above)) continue;
+            if (!(cover[from] > above)) continue;
             const std::int64_t pixel = (box.j0 + j) * whole.nx + box.i0 + i;
             if (sparse.rows.empty() || sparse.rows.back().first + sparse.rows.back().count != pixel)
                 sparse.rows.push_back({pixel, 0});

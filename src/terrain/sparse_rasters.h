@@ -30,9 +30,9 @@ struct SparseRasters {
     }
 };
 
-/// What `fields` have where the first of them exceeds `above`; missing values are zero. The fields lie on `part`, whose nodes
-/// are some of `whole`. Throws InternalError when they are not.
-SparseRasters sparse_of(const std::vector<const double*>& fields, const GridGeometry& part, const GridGeometry& whole,
-                        double above);
+/// What `fields` have where `cover` exceeds `above`; missing values are zero. Fields and cover lie on `part`, whose nodes are
+/// some of `whole`. Throws InternalError when they are not.
+SparseRasters sparse_of(const std::vector<const double*>& fields, const double* cover, const GridGeometry& part,
+                        const GridGeometry& whole, double above);
 
 }  // namespace frana

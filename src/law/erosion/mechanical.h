@@ -33,7 +33,7 @@ struct Mechanical {
     Real rate(const StateOf<Real>& s) const {
         const Real held = s.bed_density * bed_friction * s.normal_gravity * s.thickness;
         const double inertia = s.density * s.density / (s.density + s.bed_density);
-        return shear_velocity * sqrt(max(s.stress - held, Real{}) / inertia);
+        return shear_velocity * sqrt(max(s.stress - max(s.bears, held), Real{}) / inertia);
     }
 };
 

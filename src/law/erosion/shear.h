@@ -8,7 +8,8 @@ namespace frana::erosion {
 
 /// A rate that holds until the bed is as deep as its stress allows (Frank et al. 2015, Nat. Hazards Earth Syst. Sci. 15,
 /// 2569, of RAMMS): E = rate while the depth taken is below e_m = k (tau - tau_c), and none for tau <= tau_c. Their numbers
-/// are of the debris flows of the Illgraben.
+/// are of the debris flows of the Illgraben. A deposit counts as not taken. Where e_m is less than its depth, it is taken more
+/// slowly by that share, so that a stress just above the threshold does not take all of it.
 struct Shear {
     double erosion_rate = 0.025;     ///< [m/s]
     double threshold = 1000.0;       ///< tau_c [Pa]
@@ -32,8 +33,12 @@ struct Shear {
     /// src/shallow/THEORY.md (69)
     template <class Real>
     Real rate(const StateOf<Real>& s) const {
-        const Real deepest = depth_per_stress * (s.stress - threshold);
-        return min(max((deepest - s.eroded) / s.dt, Real{}), Real{} + erosion_rate);
+        const Real none{}, one = none + 1.0;
+        const Real deepest = depth_per_stress * (s.stress - max(s.bears, none + threshold));
+        const Real below = max((deepest - s.eroded) / s.dt, none);
+        const auto covered = s.lies > none;
+        const Real share = min(max(deepest, none) / select(covered, s.lies, one), one);
+        return min(select(covered, s.lies / s.dt + below, below), erosion_rate * select(covered, share, one));
     }
 };
 

@@ -14,6 +14,8 @@ struct StateOf {
     Real eroded{};             ///< depth that was taken here already, of laws with kSeesEroded [m]
     Real left{};               ///< depth that can still be taken here, of laws with kSeesLeft [m]
     Real edge{};               ///< of a square as large as the column, of laws with kSeesLeft [m]
+    Real lies{};               ///< of a deposit on the bed, of laws with kSeesStress [m]
+    Real bears{};              ///< stress that this deposit bears, of laws with kSeesStress [Pa]
     double density = 0.0;      ///< of the flow [kg/m^3]
     double bed_density = 0.0;  ///< [kg/m^3]
     double dt = 0.0;           ///< [s]

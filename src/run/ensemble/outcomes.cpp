@@ -49,6 +49,10 @@ std::vector<Outcome> outcomes_of(const EnsembleBase& base) {
                                 always("volume_m3", "volume [m3]", &SampleResult::volume),
                                 always("max_depth_m", "largest depth [m]", &SampleResult::max_depth),
                                 always("max_speed_m_s", "largest speed [m/s]", &SampleResult::max_speed)};
+    if (base.bed_changes) {
+        all.push_back(always("eroded_m3", "taken of the bed [m3]", &SampleResult::eroded));
+        all.push_back(always("deposited_m3", "left behind as bed [m3]", &SampleResult::deposited));
+    }
     for (std::size_t gauge = 0; gauge < base.gauges.size(); ++gauge)
         for (Outcome& outcome : outcomes_of_gauge(base, gauge)) all.push_back(std::move(outcome));
     return all;

@@ -125,6 +125,7 @@ private:
             const PeakField& field = peak_field(plan_.fields[f]);
             if (field.is_time) continue;
             if (f > 0) pixels.gather(*runs_.peaks, runs_.weights, f);
+            if (field.of_bed && !(pixels.largest() > 0.0)) continue;  // nothing to exceed
             told.ladders.push_back(ladder(f, field, pixels, places));
         }
         return told;

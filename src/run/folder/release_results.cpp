@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/layer_name.h"
 #include "compare/outline.h"
@@ -53,26 +54,73 @@ std::vector<ReleaseSource> release_sources(const CaseFile& file) {
         source.late = file.number(prefix + "at") > 0.0 || file.flag(prefix + "when_hit");
         if (file.given(prefix + "outline")) source.outline = file.path(prefix + "outline").string();
         if (file.given(prefix + "layer")) source.outline += kLayerMark + file.word(prefix + "layer");
+        const bool by_depth = file.given(prefix + "depth") && file.is_text(prefix + "depth");
+        if (file.given(prefix + "mask"))
+            source.mask = file.path(prefix + "mask").string();
+        else if (source.outline.empty() && by_depth)
+            source.mask = file.path(prefix + "depth").string();
         sources.push_back(std::move(source));
     }
     return sources;
 }
 
-std::optional<Raster> released_later_on(const std::vector<ReleaseSource>& sources, const std::vector<LateEntry>& late,
-                                        const Raster& like) {
+namespace {
+
+void mark_outline(const std::string& outline, const std::string& crs_wkt, Raster& marks) {
+    const GridGeometry& grid = marks.geometry;
+    std::vector<std::string> said_by_the_scene;
+    for (const Polygon& part : GdalReader().read_polygons(outline, crs_wkt, said_by_the_scene).parts)
+        for (Index j = 0; j < grid.ny; ++j)
+            for (Index i = 0; i < grid.nx; ++i)
+                if (holds(part, {grid.x(i), grid.y(j)})) marks.at(i, j) = 1.0;
+}
+
+/// Where the pixel of the mask that holds a middle is above 0.
+void mark_mask(const std::string& file, const std::string& crs_wkt, Raster& marks) {
+    const GridGeometry& grid = marks.geometry;
+    const double half = 0.5 * grid.cell;
+    std::vector<std::string> said_by_the_scene;
+    const Raster mask = GdalReader().read_raster(
+        file, {grid.x(0) - half, grid.y(0) - half, grid.x(grid.nx - 1) + half, grid.y(grid.ny - 1) + half}, crs_wkt,
+        said_by_the_scene);
+    const GridGeometry& of = mask.geometry;
+    const auto pixel = [&](double at, double first) {
+        return static_cast<Index>(std::floor((at - first) / of.cell + 0.5));
+    };
+    for (Index j = 0; j < grid.ny; ++j)
+        for (Index i = 0; i < grid.nx; ++i) {
+            const Index a = pixel(grid.x(i), of.x0), b = pixel(grid.y(j), of.y0);
+            const bool inside = a >= 0 && b >= 0 && a < of.nx && b < of.ny;
+            if (inside && mask.at(a, b) > 0.0) marks.at(i, j) = 1.0;
+        }
+}
+
+template <class Counts>
+std::optional<Raster> marks_of(const std::vector<ReleaseSource>& sources, const Raster& like, const Counts& counts) {
     std::optional<Raster> marks;
-    const GridGeometry& grid = like.geometry;
     for (const ReleaseSource& source : sources) {
-        const LateEntry* const entry = source.late && !source.outline.empty() ? entry_of(source, late) : nullptr;
-        if (!entry || !entry->entered) continue;
-        if (!marks) marks = Raster::filled(grid, 0.0);
-        std::vector<std::string> said_by_the_scene;
-        for (const Polygon& part : GdalReader().read_polygons(source.outline, like.crs_wkt, said_by_the_scene).parts)
-            for (Index j = 0; j < grid.ny; ++j)
-                for (Index i = 0; i < grid.nx; ++i)
-                    if (holds(part, {grid.x(i), grid.y(j)})) marks->at(i, j) = 1.0;
+        if (!source.late || (source.outline.empty() && source.mask.empty()) || !counts(source)) continue;
+        if (!marks) marks = Raster::filled(like.geometry, 0.0);
+        if (source.mask.empty())
+            mark_outline(source.outline, like.crs_wkt, *marks);
+        else
+            mark_mask(source.mask, like.crs_wkt, *marks);
     }
     return marks;
+}
+
+}  // namespace
+
+std::optional<Raster> released_later_on(const std::vector<ReleaseSource>& sources, const std::vector<LateEntry>& late,
+                                        const Raster& like) {
+    return marks_of(sources, like, [&](const ReleaseSource& source) {
+        const LateEntry* const entry = entry_of(source, late);
+        return entry && entry->entered;
+    });
+}
+
+std::optional<Raster> may_be_released_later_on(const std::vector<ReleaseSource>& sources, const Raster& like) {
+    return marks_of(sources, like, [](const ReleaseSource&) { return true; });
 }
 
 ShapeLayer release_layer(const std::vector<ReleaseSource>& sources, const std::vector<LateEntry>& late, double at_start,

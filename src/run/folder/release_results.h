@@ -16,7 +16,9 @@ class CaseFile;
 struct ReleaseSource {
     Index table = 0;      ///< its number
     std::string outline;  ///< as GDAL opens it, with its layer; empty: a mask, a raster or the whole terrain
-    bool late = false;    ///< it enters after the start
+    std::string
+        mask;  ///< without an outline: the raster above 0 where material is; empty: the whole terrain, or a surface
+    bool late = false;  ///< it enters after the start
 };
 
 /// All of the case, in its order.
@@ -28,9 +30,11 @@ std::vector<ReleaseSource> release_sources(const CaseFile& file);
 ShapeLayer release_layer(const std::vector<ReleaseSource>& sources, const std::vector<LateEntry>& late, double at_start,
                          const std::string& crs_wkt);
 
-/// 1 on the pixels of `like` whose middle lies in the outline of a release that entered after the start, else 0; nothing where
-/// none did. Those without an outline are not known. UserError when a file cannot be read.
+/// 1 on the pixels of `like` whose middle lies in the outline or on the mask of a release that entered after the start, else 0;
+/// nothing where none did. Those with neither are not known. UserError when a file cannot be read.
 std::optional<Raster> released_later_on(const std::vector<ReleaseSource>& sources, const std::vector<LateEntry>& late,
                                         const Raster& like);
+/// The same of all that may enter later, whether they do or not.
+std::optional<Raster> may_be_released_later_on(const std::vector<ReleaseSource>& sources, const Raster& like);
 
 }  // namespace frana
