@@ -25,7 +25,8 @@ struct BatchSums {
         speeds += m * sqrt(speed2);
         volume += select(counted, q.volume, Double4{});
         stored += select(counted, q.stored, Double4{});
-        material += q.material;  // of those that leave too; none beyond the last point
+        // Of those that leave too. Lanes beyond the last point strain by whatever nodes at random weights move.
+        material += select(q.mass > 0.0, q.material, Double4{});
         max_speed2 = max(max_speed2, select(counted, speed2, Double4{}));
         for (int k = 0; k < 3; ++k) {
             momentum[k] += m * q.v[k];

@@ -818,7 +818,7 @@ private:
                 gained += 0.5 * (v * v - now.v[k] * now.v[k]) - body.gravity[k] * body.grid.cell() * (x - now.x[k]);
                 now.x[k] = x, now.v[k] = v;
             }
-            sums.contact_work += sum(gained * now.mass);
+            sums.contact_work += sum(select(there, gained * now.mass, Double4{}));
         }
         const Mask4 inside = inside_of(body.grid, now.x), left = there & ~inside;
         if (any(left))
