@@ -93,7 +93,7 @@ TEST_CASE("Cells that all have the water's friction change no bit of columns bes
         scene.water->friction = {WaterFriction::Law::manning, coefficient};
         if (behind) {
             const GridGeometry& g = scene.bed.geometry;
-            std::vector<water::Manning> laws;
+            std::vector<water_law::Manning> laws;
             for (Index k = 0; k < g.size(); ++k) laws.push_back({g.x(k % g.nx) < 15.0 ? 0.1 : *behind});
             Friction friction;
             friction.water = laws::law_map<WaterLaw>(laws);

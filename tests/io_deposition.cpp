@@ -114,11 +114,14 @@ TEST_CASE("What lies there at the end, as flow or as bed, is one raster, and eac
 TEST_CASE("Ground that thin layers bury was covered", "[program][deposition]") {
     const Slide slide(std::string(kSecondSlide) + kLoose);
     const fs::path dir = slide.run("run");
-    const Raster lying = raster_of(dir, "lying_depth.tif"), peak = raster_of(dir, "peak_depth.tif");
+    const Raster lying = raster_of(dir, "lying_depth.tif"), peak = raster_of(dir, "peak_depth.tif"),
+                 arrival = raster_of(dir, "arrival_time.tif");
     double covered = 0.0, buried = 0.0;
     for (std::size_t k = 0; k < lying.values.size(); ++k) {
         buried += lying.values[k] > 0.1 && !(peak.values[k] > 0.1) ? kPixel : 0.0;
-        covered += lying.values[k] > 0.1 || peak.values[k] > 0.1 ? kPixel : 0.0;
+        const bool here = lying.values[k] > 0.1 || peak.values[k] > 0.1;
+        covered += here ? kPixel : 0.0;
+        if (here) CHECK(arrival.values[k] >= 0.0);  // no data is less than nothing
     }
     REQUIRE(buried > 0.0);
     CHECK(Json::parse(text_of(dir / "run.json"))["results"]["footprint_area"].get<double>() == covered);

@@ -15,6 +15,7 @@
 #include "io/hdf5_peaks.h"
 #include "plane_case.h"
 #include "pond.h"
+#include "read_raster.h"
 #include "run/ensemble/kept_peaks.h"
 
 namespace fs = std::filesystem;
@@ -384,11 +385,12 @@ TEST_CASE("What flowed is what was released and taken of the bed, once however o
                                         "[material.bed]\nlaw = \"coulomb\"\nmu = 0.2\n" +
                                         loose + (deposits ? "0.0\n[deposition]\nlaw = \"rest\"\ntime = 1\n" : "0.4\n"));
     frana::write_text(plane.folder() / "many.toml",
-                      "[ensemble]\ncase = \"case.toml\"\nmethod = \"table\"\ntable = \"rows.csv\"\nquantiles = []\n");
+                      "[ensemble]\ncase = \"case.toml\"\nmethod = \"table\"\ntable = \"rows.csv\"\nquantiles = [0.5]\n"
+                      "fields = [\"eroded_depth\", \"bed_change\"]\nexceed = { eroded_depth = [0.1] }\n");
     frana::write_text(plane.folder() / "rows.csv", "release.0.depth\n1.5\n");
     REQUIRE(plane.frana("ensemble many.toml --out many --quiet").code == 0);
-    REQUIRE(plane.frana("run CASE --quiet --set 'output.formats=[]' --out alone").code == 0);
-    const Json budgets = Json::parse(text_of(plane.folder() / "alone/run.json"))["budgets"];
+    REQUIRE(plane.frana("run CASE --quiet --set 'output.formats=[\"geotiff\"]' --out alone").code == 0);
+    const Json record = Json::parse(text_of(plane.folder() / "alone/run.json")), budgets = record["budgets"];
     const double out = budgets["mass"]["left_domain"], eroded = budgets["bed"]["eroded"];
     REQUIRE((!deposits || out > 0.01 * density * released));
     REQUIRE(eroded > 0.01 * density * released);
@@ -399,6 +401,26 @@ TEST_CASE("What flowed is what was released and taken of the bed, once however o
     // Round-off of sums of some thousand terms, over some thousand steps.
     CHECK(number("volume_m3") == Approx(flowed).epsilon(1e-10));
     CHECK(number("left_share") == Approx(out / (density * flowed)).epsilon(1e-10));
+    const Json bed = budgets["bed"];
+    CHECK(number("eroded_m3") == Approx(bed["taken_of_bed"].get<double>() / density).epsilon(1e-10).margin(1e-6));
+    CHECK(number("deposited_m3") == Approx(bed["lies_behind"].get<double>() / density).epsilon(1e-10).margin(1e-6));
+    // Maps of one run are its own: what lies there counts as covered.
+    const auto map = [&](const std::string& name) { return raster_in(plane.folder() / (name + ".tif")); };
+    const frana::Raster reached = map("many/rasters/probability_reached"),
+                        likely = map("many/rasters/probability_eroded_depth_0.1"),
+                        change = map("many/rasters/quantile_bed_change_0.5"),
+                        change_alone = map("alone/rasters/bed_change"),
+                        eroded_alone = map("alone/rasters/eroded_depth");
+    REQUIRE(reached.geometry == change_alone.geometry);
+    double area = 0.0;
+    for (std::size_t k = 0; k < reached.values.size(); ++k) {
+        if (!(reached.values[k] > 0.0)) continue;
+        area += reached.geometry.cell * reached.geometry.cell;
+        const auto known = [](double value) { return std::isnan(value) ? 0.0 : value; };
+        CHECK(known(change.values[k]) == Approx(known(change_alone.values[k])).margin(1e-6));
+        CHECK((likely.values[k] == 1.0) == (known(eroded_alone.values[k]) > 0.1));
+    }
+    CHECK(area == record["results"]["footprint_area"].get<double>());
 }
 
 namespace {

@@ -111,7 +111,16 @@ TEST_CASE("A GIS gets the outlines of all releases, with what entered and when",
 TEST_CASE("Ground under releases is left out of a comparison with two surveys, under later ones too",
           "[program][late][compare]") {
     const Releases plane;
-    write_text(plane.file(), text_of(plane.file()) + "[deposition]\nlaw = \"rest\"\n");
+    const bool by_mask = GENERATE(false, true);
+    CAPTURE(by_mask);
+    std::string text = text_of(plane.file()) + "[deposition]\nlaw = \"rest\"\n";
+    if (by_mask) {
+        const std::string outline = "outline = \"timed.geojson\"";
+        text.replace(text.find(outline), outline.size(), "mask = \"timed.tif\"");
+        write_geotiff(plane.folder() / "timed.tif", Raster::filled({4, 4, 102.5, 42.5, 5.0}, 1.0), "1",
+                      "where it lies");
+    }
+    write_text(plane.file(), text);
     write_text(plane.folder() / "footprint.geojson", rectangle_text(20, 30, 140, 70));
     write_geotiff(plane.folder() / "dod.tif", Raster::filled({30, 20, 2.5, 2.5, 5.0}, -0.5), "m", "after less before");
     const fs::path dir = plane.folder() / "out";
@@ -135,7 +144,7 @@ TEST_CASE("Ground under releases is left out of a comparison with two surveys, u
     const std::string again = "compare " + dir.string() + " --survey footprint.geojson --bed-change dod.tif";
     REQUIRE(plane.frana(again).code == 0);
     CHECK(in_release() == Approx(0.5 * released).epsilon(1e-12));
-    fs::remove(plane.folder() / "timed.geojson");
+    fs::remove(plane.folder() / (by_mask ? "timed.tif" : "timed.geojson"));
     const Outcome gone = plane.frana(again);
     CHECK(gone.code == 0);
     CHECK_THAT(gone.err, Contains("ground under later releases is compared as well: "));

@@ -10,7 +10,7 @@
 namespace frana {
 
 /// Friction of water at the bed as a case names it: parameters and keys of each law.
-namespace water {
+namespace water_law {
 
 struct None {
     static constexpr const char* name = "none";
@@ -38,9 +38,9 @@ struct DarcyWeisbach {
     }
 };
 
-}  // namespace water
+}  // namespace water_law
 
-using WaterLaw = std::variant<water::None, water::Manning, water::DarcyWeisbach>;
+using WaterLaw = std::variant<water_law::None, water_law::Manning, water_law::DarcyWeisbach>;
 using WaterLawMap = laws::LawMap<WaterLaw>;
 
 /// Stress over density k |V| V: g n^2 / T^(1/3) of Manning (n in s/m^(1/3)), or f / 8 of Darcy and Weisbach
@@ -52,8 +52,8 @@ struct WaterFriction {
 };
 
 inline WaterFriction water_friction(const WaterLaw& law) {
-    if (const auto* manning = std::get_if<water::Manning>(&law)) return {WaterFriction::Law::manning, manning->n};
-    if (const auto* darcy = std::get_if<water::DarcyWeisbach>(&law))
+    if (const auto* manning = std::get_if<water_law::Manning>(&law)) return {WaterFriction::Law::manning, manning->n};
+    if (const auto* darcy = std::get_if<water_law::DarcyWeisbach>(&law))
         return {WaterFriction::Law::darcy_weisbach, darcy->f};
     return {};
 }
