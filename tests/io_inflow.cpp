@@ -100,7 +100,8 @@ TEST_CASE("A flood leaves its budget, and a section its table, figure and lines 
     CHECK(json["budgets"]["mass"]["came_in"].get<double>() == Approx(1000.0 * kVolume).epsilon(1e-13));
     CHECK(std::abs(json["budgets"]["mass"]["relative_error"].get<double>()) < 1e-13);
     const Table table = read_table(dir / "sections" / "bridge.csv");
-    CHECK(table.columns == std::vector<std::string>{"t", "discharge", "volume"});
+    CHECK(table.columns == std::vector<std::string>{"t", "discharge", "volume", "sediment"});
+    CHECK(table.column("sediment") == table.column("volume"));  // of one phase
     CHECK(table.rows() == json["steps"].get<std::size_t>() + 1);
     const double passed = json["sections"][0]["volume"].get<double>();
     CHECK(passed == table.column("volume").back());
