@@ -8,11 +8,13 @@
 
 #include "compare/expected_width.h"
 #include "compare/flow_width.h"
+#include "compare/runout.h"
 #include "frana_check.h"
 #include "frana_commands.h"
 #include "io/gdal_reader.h"
 #include "run/folder/run_insitu.h"
 #include "run/folder/run_page.h"
+#include "scene/flow_start.h"
 #include "scene/inflow_facts.h"
 #include "scene/memory_need.h"
 #include "shallow/feed.h"
@@ -194,6 +196,41 @@ std::string width_text(const Scene& scene) {
     return remark.empty() ? text : text + fmt::format("remark      by the estimate {}\n", remark);
 }
 
+/// Length of a path over loose material, along the map [m].
+double loose_way(const Polyline& path, const Raster& loose) {
+    const GridGeometry& g = loose.geometry;
+    double way = 0.0;
+    for (std::size_t k = 0; k + 1 < path.size(); ++k) {
+        const Vec2 middle = 0.5 * (path[k] + path[k + 1]);
+        const auto i = static_cast<Index>(std::lround((middle.x() - g.x0) / g.cell)),
+                   j = static_cast<Index>(std::lround((middle.y() - g.y0) / g.cell));
+        if (i >= 0 && j >= 0 && i < g.nx && j < g.ny && loose.at(i, j) > 0.0) way += (path[k + 1] - path[k]).norm();
+    }
+    return way;
+}
+
+/// How far a flow that takes up its bed in proportion to its way grows on the steepest path over loose material, with a
+/// remark where that is more than a hundredfold.
+std::string growth_text(const BuiltScene& built) {
+    constexpr double kHundredfold = 100.0;
+    const Scene& scene = built.scene;
+    const auto* law = scene.erodible ? std::get_if<erosion::Growth>(&scene.erodible->law) : nullptr;
+    const std::optional<Vec2> start = law ? flow_start(scene) : std::nullopt;
+    if (!start) return "";
+    const Polyline path = steepest_path(scene.bed, *start);
+    const double way = loose_way(path, scene.erodible->depth);
+    double volume = 0.0;
+    for (const ReleaseSummary& release : built.releases) volume += release.report.volume;
+    for (const Inflow& inflow : scene.inflows) volume += facts_of(inflow, scene.gravity).volume;
+    const double factor = std::exp(law->growth * way);
+    if (!(factor > kHundredfold)) return "";
+    return fmt::format(
+        "remark      erodible.growth: found {:.4g} /m, by which {:.4g} m3 would become {:.3g} m3 over {:.4g} m of "
+        "loose "
+        "material on the steepest path; expected growth to {:g} times at most; give a smaller one\n",
+        law->growth, volume, volume * factor, way, kHundredfold);
+}
+
 std::string seconds_text(double seconds) {
     if (seconds < 120.0) return fmt::format("{:.2g} s", seconds);
     return seconds < 7200.0 ? fmt::format("{:.0f} min", seconds / 60.0) : fmt::format("{:.1f} h", seconds / 3600.0);
@@ -275,7 +312,8 @@ std::string barriers_text(const Scene& scene) {
 std::string told_of(const BuiltScene& built) {
     std::string text = fmt::format("case        {}\n", built.scene.title) + grid_text(built.scene);
     for (const ReleaseSummary& release : built.releases) text += release_text(release);
-    text += total_text(built) + width_text(built.scene) + forecast_text(built.scene) + frames_text(built.scene);
+    text += total_text(built) + width_text(built.scene) + growth_text(built) + forecast_text(built.scene) +
+            frames_text(built.scene);
     if (built.scene.friction)
         for (const FrictionPart& part : built.scene.friction->parts)
             text += fmt::format("friction    {}{}: {}\n", part.name, built.scene.wider ? ", around the releases" : "",

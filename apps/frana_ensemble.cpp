@@ -131,6 +131,8 @@ int run_ensemble(EnsembleOptions options, ProgressLines& lines) {
     EnsemblePlan plan = read_ensemble(options.file);
     for (const std::string& wish : options.exceed) add_exceedance(plan, wish);
     if (options.slurm > 0) return print_job(options);
+    for (const Vary& vary : plan.vary)
+        if (!vary.prior.empty()) std::cerr << vary.prior << '\n';
     if (options.again) return run_again(options, plan);
     const EnsembleRun ensemble(std::move(plan), options.out);
     if (options.check) return foretell(ensemble, options);

@@ -152,6 +152,7 @@ TEST_CASE("sections/NAME.csv has a row a step, whatever the outputs", "[sections
         Observers observers;
         std::vector<SectionLine> lines;
         for (const Section& section : scene.sections) lines.push_back({section.name, section.line, section.to_right});
+        lines[0].solid_share = 0.6;
         observers.push_back(std::make_unique<Sections>(folder.path(), lines, 0.5, summaries));
         std::ostringstream stream;
         Progress progress(stream, Progress::Style::silent, scene.density);
@@ -160,6 +161,9 @@ TEST_CASE("sections/NAME.csv has a row a step, whatever the outputs", "[sections
         CHECK(read.rows() == static_cast<std::size_t>(summary.steps) + 1);
         CHECK(read.column("volume").back() == run.passed()[0]);
         CHECK(summaries[0].volume == run.passed()[0]);
+        CHECK(read.column("sediment").back() == 0.6 * run.passed()[0]);
+        CHECK(summaries[0].sediment == read.column("sediment").back());
+        CHECK(summaries[1].sediment == summaries[1].volume);  // all of it, where nothing tells of grains
         CHECK(summaries[0].peak == *std::max_element(read.column("discharge").begin(), read.column("discharge").end()));
         // Discharge is of the nodes: its integral is the volume to the order of a cell's share of the flow's length.
         CHECK(summaries[0].integral == Approx(summaries[0].volume).epsilon(0.05));

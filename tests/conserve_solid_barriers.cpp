@@ -134,6 +134,26 @@ TEST_CASE("Water at rest pushes a wall by rho g h^2 / 2, low down more than high
     }
 }
 
+TEST_CASE("Two houses side by side take together what one barrier takes, half each", "[solid][barriers]") {
+    const double cell = 0.125, width = 3 * cell;  // they meet between nodes: on one, its push would be the first's
+    SolidScene one = water(Turn{}, {1, width, 1}, {1.6, width, 1.4}, cell);
+    one.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}), Surface::plane({0, 0, 0}, {1, 0, 0}),
+                    Surface::plane({0, 0, 0}, {0, 1, 0}), Surface::plane({0, width, 0}, {0, -1, 0}),
+                    Surface::barrier(Prism(rectangle(1, -1, 1.6, 2), 3.0))};
+    SolidScene two = one;
+    two.surfaces[4] = Surface::barrier(Prism(rectangle(1, -1, 1.6, 0.5 * width), 3.0));
+    two.surfaces.push_back(Surface::barrier(Prism(rectangle(1, 0.5 * width, 1.6, 2), 3.0)));
+    Mpm3d alone(one), pair(two);
+    run_to(alone, 0.3), run_to(pair, 0.3);
+    const Vec3 all = alone.body().impulse[4], left = pair.body().impulse[4], right = pair.body().impulse[5];
+    CAPTURE((left + right).x() / all.x(), left.x() / right.x());
+    CHECK((left + right - all).norm() < 0.005 * all.norm());  // the tank's gate of a force
+    // 3 %: what a designer is promised of each square.
+    for (const Vec3& half : {left, right}) CHECK(half.x() == Approx(0.5 * all.x()).epsilon(0.03));
+    CHECK(inside_barriers(pair) == 0);
+    CHECK(pair.momentum_residual().norm() < 1e-12 * pair.status().weight_impulse.norm());
+}
+
 TEST_CASE("Not one point of a block of water that strikes a wall gets into it or through, however thin it is",
           "[solid][barriers]") {
     struct Blow {

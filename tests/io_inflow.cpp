@@ -100,7 +100,8 @@ TEST_CASE("A flood leaves its budget, and a section its table, figure and lines 
     CHECK(json["budgets"]["mass"]["came_in"].get<double>() == Approx(1000.0 * kVolume).epsilon(1e-13));
     CHECK(std::abs(json["budgets"]["mass"]["relative_error"].get<double>()) < 1e-13);
     const Table table = read_table(dir / "sections" / "bridge.csv");
-    CHECK(table.columns == std::vector<std::string>{"t", "discharge", "volume"});
+    CHECK(table.columns == std::vector<std::string>{"t", "discharge", "volume", "sediment"});
+    CHECK(table.column("sediment") == table.column("volume"));  // of one phase
     CHECK(table.rows() == json["steps"].get<std::size_t>() + 1);
     const double passed = json["sections"][0]["volume"].get<double>();
     CHECK(passed == table.column("volume").back());
@@ -216,4 +217,22 @@ TEST_CASE("A flood that takes up its bed grows from what came in", "[program][in
     REQUIRE(taken > 0.1 * kVolume);
     CHECK_THAT(text_of(dir / "report.md"),
                Contains(fmt::format("(its mass grew {:.3g} times)", (kVolume + taken) / kVolume)));
+}
+
+TEST_CASE("A growth that the steepest path would make more than a hundredfold is told before the run",
+          "[program][inflow][erosion]") {
+    const Flood plane;
+    const auto told = [&](const std::string& growth) {
+        const Outcome check = plane.frana(
+            "check CASE --set erodible.law=growth --set erodible.depth=0.5 --set erodible.growth=" + growth);
+        INFO(check.err);
+        REQUIRE(check.code == 0);
+        return check.out;
+    };
+    // From the line to the plane's last node are 105 m: exp(5.25) is 191, exp(4.2) is 67.
+    CHECK_THAT(
+        told("0.05"),
+        Contains("remark      erodible.growth: found 0.05 /m, by which 240 m3 would become 4.57e+04 m3 over 105 m "
+                 "of loose material on the steepest path; expected growth to 100 times at most"));
+    CHECK_THAT(told("0.04"), !Contains("erodible.growth: found"));
 }

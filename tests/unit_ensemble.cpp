@@ -160,6 +160,30 @@ TEST_CASE("A grid takes all combinations, with the weights of what is chosen of"
     CHECK(plan.points[1].weight == Approx(0.6));
 }
 
+TEST_CASE("A key without a range has the prior of the kind of mass, and says so", "[ensemble][parameters]") {
+    const EnsembleFile file;
+    const auto vary = [&](const std::string& keys) { return head + "[[ensemble.vary]]\nkey = \"" + keys + "\"\n"; };
+    CHECK_THAT(file.complaint(vary("material.bed.mu")), Contains("ensemble.vary.0.range: found no range"));
+    file.write("case.toml", "[case]\nkind = \"debris_flow\"\n[material.bed]\nlaw = \"voellmy\"\n");
+    const Vary mu_of_kind = file.read(vary("material.bed.mu")).vary.at(0);
+    CHECK(mu_of_kind.distribution.kind == Distribution::Kind::triangular);
+    CHECK((mu_of_kind.distribution.low == 0.05 && mu_of_kind.distribution.middle == 0.12));
+    CHECK(mu_of_kind.distribution.high == 0.3);
+    CHECK(mu_of_kind.prior ==
+          "material.bed.mu: without a range it has the prior of case.kind = \"debris_flow\": triangular, 0.05 to 0.3, "
+          "most likely 0.12; see cases/PARAMETERS.md");
+    const Vary xi = file.read(vary("material.bed.xi")).vary.at(0);
+    CHECK(xi.distribution.number(0.5) == Approx(300.0));
+    const Vary rate = file.read(vary("erodible.rate")).vary.at(0);  // of the range
+    CHECK((rate.distribution.kind == Distribution::Kind::uniform && rate.distribution.low == 0.0125));
+    CHECK(rate.distribution.high == 0.05);
+    CHECK(file.read(vary("material.bed.mu") + "range = [0.1, 0.2]\n").vary.at(0).prior.empty());
+    CHECK_THAT(file.complaint(vary("release.0.depth")),
+               Contains("found no range") && Contains("case.kind = \"debris_flow\" has no prior of it"));
+    file.write("case.toml", "[case]\nkind = \"debris_flow\"\n[material.bed]\nlaw = \"coulomb\"\n");
+    CHECK(file.read(vary("material.bed.mu")).vary.at(0).distribution.kind == Distribution::Kind::uniform);
+}
+
 TEST_CASE("What an ensemble's file cannot ask for is said in one sentence each", "[ensemble]") {
     const EnsembleFile file;
     CHECK_THAT(file.complaint(head), Contains("ensemble.vary: found no [[ensemble.vary]]"));

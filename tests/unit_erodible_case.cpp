@@ -1,7 +1,10 @@
 // [erodible] of a case: its depth, its outline, its law, and what is wrong with them.
+#include <algorithm>
 #include <cmath>
 
+#include "observe/budget.h"
 #include "scene/build_scene.h"
+#include "shallow/depth_averaged.h"
 #include "slope_case.h"
 
 using namespace frana;
@@ -102,4 +105,76 @@ TEST_CASE("Loose ground that looks like a mistake, or lies outside, is a remark"
     CHECK(has(all, "62.5 % of its area lie outside of the terrain"));  // which ends at its outer nodes
     CHECK(has(all, "up to 60 m deep; is that a depth, and in metres?"));
     CHECK(has(all, "up to 12000 m3 of loose material can be taken up"));
+}
+
+TEST_CASE("A release that is cut out of the ground uncovers loose material, which it takes down to the rock",
+          "[erosion][scene]") {
+    const auto scene_with = [](const std::string& erodible) {
+        return build_scene(CaseFile::parse("[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\n"
+                                           "depth = 2\nincluded_in_dem = true\n[time]\nend = 20\n[material]\n"
+                                           "density = 1900\n[material.bed]\nlaw = \"coulomb\"\nmu = 0.2\n" +
+                                               erodible,
+                                           "slide/case.toml"),
+                           slope_gis());
+    };
+    const Scene scene = scene_with("[erodible]\nlaw = \"growth\"\ngrowth = 0.05\ndepth = 0.3\ndensity = 1500\n");
+    DepthAveraged simulation(scene), rock(scene_with(""));
+    const Status first = simulation.frame().status;
+    while (simulation.status().time < 4.0) simulation.advance(4.0);
+    const Frame frame = simulation.frame();
+    const Budget left_over = budget(first, frame.status);
+    CHECK(std::abs(left_over.mass_error) <= 1e-13);
+    CHECK(std::abs(left_over.bed_error) <= 1e-13);
+    const double *eroded = frame.node("eroded_depth")->data, *z = frame.node("elevation")->data;
+    double most = 0.0, in_scar = 0.0, off = 0.0;
+    for (Index j = 0; j < frame.grid.ny; ++j)
+        for (Index i = 0; i < frame.grid.nx; ++i) {
+            const Index n = j * frame.grid.nx + i;
+            most = std::max(most, eroded[n]);
+            if (frame.grid.x(i) > 1055 && frame.grid.x(i) < 1095 && frame.grid.y(j) > 2055 && frame.grid.y(j) < 2075)
+                in_scar = std::max(in_scar, eroded[n]);
+            off = std::max(off, std::abs(z[n] + eroded[n] - rock.flow().bed.z[rock.flow().grid.at(i, j)]));
+        }
+    CHECK(in_scar > 0.1);
+    CHECK(most <= 0.3);
+    CHECK(off <= 1e-12);  // the bed of the start is that without the release
+    CHECK(rock.flow().bed.z[rock.flow().grid.at(15, 12)] < slope_gis().rasters["dem.tif"].at(15, 12) - 1.9);
+}
+
+TEST_CASE("Laws by which short waves on the bed grow name the viscosity that stops them", "[erosion][scene][remarks]") {
+    const auto told = [](const std::string& erodible) {
+        Index found = 0;
+        for (const std::string& remark : scene_of(slope_gis(), "depth = 1\n" + erodible).log)
+            if (has(remark, "without a viscosity")) {
+                ++found;
+                CHECK(has(remark, "erodible.law: found \""));
+                CHECK(has(remark, "0.03 times density, depth and speed (179 Pa s for a depth of 1 m)"));  // 1900 kg/m3
+            }
+        return found;
+    };
+    CHECK(told("law = \"jump\"\n") == 1);
+    CHECK(told("law = \"energy\"\nenergy = 5000\n") == 1);
+    CHECK(told("law = \"jump\"\nbed_evolves = false\n") == 0);
+    CHECK(told("law = \"growth\"\ngrowth = 1e-3\n") == 0);
+    CHECK(told("law = \"jump\"\n[material.rheology]\nlaw = \"newtonian\"\nviscosity = 200\n") == 0);
+}
+
+TEST_CASE("Loose material in a scar only is a remark", "[erosion][scene][remarks]") {
+    FakeGis gis = slope_gis();
+    gis.polygons["scar.geojson"] = rectangle(1055, 2055, 1095, 2075);
+    gis.polygons["gully.geojson"] = rectangle(1030, 2055, 1095, 2075);
+    const auto told = [&](const std::string& outline, const std::string& of_release) {
+        const Scene scene = build_scene(
+            CaseFile::parse("[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n" +
+                                of_release + "[time]\nend = 20\n[erodible]\nlaw = \"shear\"\ndepth = 1\noutline = \"" +
+                                outline + "\"\n",
+                            "slide/case.toml"),
+            gis);
+        return std::count_if(scene.log.begin(), scene.log.end(), [](const std::string& remark) {
+            return has(remark, "erodible.depth: found loose material under releases with included_in_dem only");
+        });
+    };
+    CHECK(told("scar.geojson", "included_in_dem = true\n") == 1);
+    CHECK(told("gully.geojson", "included_in_dem = true\n") == 0);
+    CHECK(told("scar.geojson", "") == 0);
 }

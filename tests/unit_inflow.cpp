@@ -53,7 +53,14 @@ TEST_CASE("What is wrong with a table is said in a sentence", "[inflow]") {
     CHECK(problem_of_table("t [s], t_min\n0, 1\n").rfind("q.csv: found 2 columns of time, 0 of discharge", 0) == 0);
     CHECK(problem_of_table("").rfind("q.csv: found an empty file", 0) == 0);
     CHECK(problem_of_table(head + "0, 1\n").rfind("q.csv: found 1 row; expected two or more", 0) == 0);
-    CHECK(problem_of_table(head + "0, 1\n5\n").rfind("q.csv:3: found 1 cells; expected 2", 0) == 0);
+    CHECK(problem_of_table(head + "0, 1\n5\n") ==
+          "q.csv:3: found a gap, \"5\"; expected 2 columns as in the first line; fill it, or remove the row");
+    for (const char* row : {"5,", "5, ", ",3", "5, , 7"})
+        CHECK(problem_of_table(head + "0, 1\n" + row + "\n").rfind("q.csv:3: found ", 0) == 0);
+    CHECK(problem_of_table(head + "0, 1\n5,\n") ==
+          "q.csv:3: found a gap; expected a number in each column; fill it, or remove the row");
+    CHECK(problem_of_table(head + "0, 1\n5, 6, 7\n") ==
+          "q.csv:3: found 3 columns, \"5, 6, 7\"; expected 2 columns as in the first line; correct the row");
     CHECK(problem_of_table(head + "0, 1\n5, nan\n").rfind("q.csv:3: found \"nan\"; expected a number", 0) == 0);
     CHECK(problem_of_table(head + "0, 1\n0, 2\n").rfind("q.csv: row 2 (t = 0 s): found a time that is not later", 0) ==
           0);
@@ -78,7 +85,7 @@ TEST_CASE("Rows of r.avaflow are read, with or without their header, and their p
     CHECK(two.remark.find("of 2 phases, which come in as one: their discharges are summed") != std::string::npos);
     CHECK(parse_hydrograph("t Q1 v1 Q2 v2 Q3 v3\n0 1 1 1 1 1 1\n9 1 1 1 1 1 1\n", "q.txt").volume() == 27.0);
     CHECK(problem_of_table("0 1 1\n5 -1 1\n").rfind("q.csv:2: found -1; expected discharges and velocities", 0) == 0);
-    CHECK(problem_of_table("0 1 1\n5 1 1 1\n").rfind("q.csv:2: found 4 cells; expected 3", 0) == 0);
+    CHECK(problem_of_table("0 1 1\n5 1 1 1\n").rfind("q.csv:2: found 4 columns, \"5 1 1 1\"; expected 3", 0) == 0);
     CHECK(problem_of_table("0 1 1\n5 nan 1\n").rfind("q.csv:2: found \"nan\"", 0) == 0);
     CHECK(
         problem_of_table("t, v, Q\n0, 1, 1\n9, 1, 1\n").rfind("q.csv: found the column \"t\"; expected a header", 0) ==

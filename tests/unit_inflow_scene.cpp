@@ -1,4 +1,6 @@
 // [[inflow]] and [[section]] of a case: what they become, and what is refused.
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include "catch.h"
@@ -131,7 +133,7 @@ TEST_CASE("What an inflow cannot be is said in a sentence", "[scene][inflow]") {
                "found 900, 2050 outside of the terrain"));
     CHECK(says(problem_of(with("line = [[1010, 2050], [1010, 2080]]\n" + volume)), "line", "found 1010, 2050 outside"));
     CHECK(says(problem_of(with("line = [[1050, 2060], [1100, 2060]]\n" + volume)), "line",
-               "found flat ground under the line"));
+               "found a line that runs down the slope of 26.6 degrees; expected one across the flow; turn it"));
     CHECK(says(problem_of(with(kLine + volume + "towards = [1100, 2200]\n")), "towards", "found towards on the line"));
     CHECK(says(problem_of(with(kLine + volume + "towards = [1190, 2060]\n")), "velocity",
                "found velocity = \"normal\" on ground that rises by 26.6 degrees"));
@@ -180,7 +182,11 @@ TEST_CASE("What an area of an inflow cannot be is said in a sentence", "[scene][
     CHECK(says(problem_of(with(kLine + area + volume)), "line", "found together with"));
     CHECK(says(problem_of(with(area + volume + "velocity = 3\n")), "velocity", "found together with area"));
     CHECK(says(problem_of(with(area + volume + "towards = [1100, 2200]\n")), "towards", "found together with area"));
-    CHECK(says(problem_of(with("area = [[1100, 2050], [1120, 2050]]\n" + volume)), "area", "found "));
+    CHECK(says(problem_of(with("area = [[1100, 2050], [1120, 2050]]\n" + volume)), "area", "found a list of 2 values"));
+    for (const char* flat :
+         {"[[1100, 2050], [1120, 2050], [1140, 2050]]", "[[1100, 2050], [1120, 2060], [1100, 2050]]"})
+        CHECK(says(problem_of(with("area = " + std::string(flat) + "\n" + volume)), "area",
+                   "found an outline without area, such as a line; expected the outline of an area"));
     CHECK(says(problem_of(with("area = [[1100, 2050], [1102, 2050], [1102, 2052]]\n" + volume)), "area",
                "found an area of 2 m2"));
     CHECK(says(problem_of(with("area = [[900, 2050], [1120, 2050], [1120, 2070]]\n" + volume)), "area",
@@ -202,6 +208,41 @@ TEST_CASE("A line across a ridge has no side to flow to", "[scene][inflow]") {
                     gis);
     });
     CHECK(says(problem, "line", "found "));
+}
+
+TEST_CASE("Ground without a side to flow to is said to be what it is", "[scene][inflow]") {
+    const auto problem = [](double (*height)(double, double), const std::string& line) {
+        FakeGis gis = slope_gis();
+        gis.rasters["dem.tif"] = sampled({40, 30, 1002.5, 2002.5, 5.0}, height);
+        return only_problem(
+            [&] { build_scene(CaseFile::parse(with("line = " + line + "\nvolume = 100\n"), "slide/case.toml"), gis); });
+    };
+    const auto ridge = [](double x, double) { return 200.0 - 0.4 * std::abs(x - 1102.5); };
+    CHECK(says(problem([](double, double) { return 7.0; }, "[[1080, 2050], [1120, 2050]]"), "line",
+               "found flat ground under the line; expected a slope"));
+    // Over the ridge, slantwise: what falls to the one side falls to the other.
+    CHECK(says(problem(ridge, "[[1072.5, 2042.5], [1132.5, 2102.5]]"), "line",
+               "found ground that slopes to one side of the line as much as to the other"));
+    CHECK(says(problem(ridge, "[[1102.5, 2050], [1102.5, 2080]]"), "line",
+               "found a line along a ridge, which falls to both sides by 21.8 degrees"));
+    CHECK(says(problem([](double x, double) { return 200.0 + 0.4 * std::abs(x - 1102.5); },
+                       "[[1102.5, 2050], [1102.5, 2080]]"),
+               "line", "found a line along a valley's floor, which rises to both sides by 21.8 degrees"));
+    CHECK(says(problem(ridge, "[[1112.5, 2050], [1142.5, 2050]]"), "line",
+               "found a line that runs down the slope of 21.8 degrees"));
+}
+
+TEST_CASE("A flow that is sent up the slope with a speed of its own is a remark", "[scene][inflow][remarks]") {
+    const auto told = [](const std::string& towards) {
+        const Scene scene = built(with(kLine + "volume = 1000\nvelocity = 5\n" + towards));
+        return std::count_if(scene.log.begin(), scene.log.end(), [](const std::string& remark) {
+            return remark.find("inflow.0.towards: found a line that the flow leaves up a slope of 26.6 degrees") !=
+                   std::string::npos;
+        });
+    };
+    CHECK(told("towards = [1190, 2060]\n") == 1);
+    CHECK(told("towards = [1010, 2060]\n") == 0);
+    CHECK(told("") == 0);
 }
 
 TEST_CASE("A section counts down the slope as positive", "[scene][sections]") {

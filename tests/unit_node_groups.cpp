@@ -10,7 +10,7 @@ using namespace frana;
 
 namespace {
 
-using NodeSet = std::set<std::pair<int, int>>;
+using SetOfNodes = std::set<std::pair<int, int>>;
 
 /// Whether group bits of the tile at (0, 0) and its neighbours hold node (i, j), -16 <= i, j < 32.
 bool holds(const TileReach& reach, int i, int j) {
@@ -19,8 +19,8 @@ bool holds(const TileReach& reach, int i, int j) {
 }
 
 /// Nodes by whose group a node of the set lies.
-NodeSet filled_up(const NodeSet& nodes) {
-    NodeSet full;
+SetOfNodes filled_up(const SetOfNodes& nodes) {
+    SetOfNodes full;
     for (const auto& [i, j] : nodes)
         for (int n = 0; n < 4; ++n) full.insert({(i + 16) / 4 * 4 - 16 + n, j});
     return full;
@@ -34,14 +34,14 @@ TEST_CASE("The reach of stencils is every node that one touches, in whole groups
     for (int trial = 0; trial < 200; ++trial) {
         const int before = trial % 3, after = 1 + trial % 4;
         StencilMarks marks(160, 320);
-        NodeSet nodes;
+        SetOfNodes nodes;
         for (int n = few(random); n > 0; --n) {
             const int i = at(random), j = at(random);
             marks.mark(160 + i, 320 + j);
             for (int dj = -before; dj <= after; ++dj)
                 for (int di = -before; di <= after; ++di) nodes.insert({i + di, j + dj});
         }
-        const NodeSet expected = filled_up(nodes);
+        const SetOfNodes expected = filled_up(nodes);
         const TileReach reach = marks.reach(before, after);
         int wrong = 0;
         for (int j = -16; j < 32; ++j)

@@ -186,6 +186,22 @@ TEST_CASE("Values outside of the kind's ranges are remarked upon, at the limits 
               .empty());
 }
 
+TEST_CASE("What takes up the bed has ranges of its own; a value that stands alone is no limit", "[parameters][scene]") {
+    const auto found = [](const std::string& kind, const std::string& erodible) {
+        return remarks(
+            kind, "density = " + std::string(kind == "snow" ? "300" : "1900") + "\n[erodible]\ndepth = 1\n" + erodible);
+    };
+    CHECK(found("debris_flow", "law = \"shear\"\nrate = 0.05\nthreshold = 500\ndepth_per_stress = 2e-4\n").empty());
+    const auto fast = found("debris_flow", "law = \"shear\"\nrate = 0.5\nthreshold = 1000\n");
+    REQUIRE(fast.size() == 1);
+    CHECK(fast[0].find("erodible.rate: found 0.5; expected 0.0125 to 0.05 m/s for debris_flow") != std::string::npos);
+    CHECK(found("debris_flow", "law = \"growth\"\ngrowth = 1e-3\n").empty());  // its range has no source
+    CHECK(found("snow", "law = \"energy\"\nenergy = 9000\n").empty());
+    const std::string rate = describe("erodible.rate");
+    CHECK(rate.find("debris_flow: 0.0125 to 0.05 m/s, half to twice the published value; Frank et al. 2015") !=
+          std::string::npos);
+}
+
 TEST_CASE("Ranges go with the bed law, and angles are compared as angles", "[parameters][scene]") {
     const auto rock = [](const std::string& bed) { return remarks("rock_avalanche", "density = 2100\n" + bed); };
     CHECK(rock("bed.law = \"coulomb\"\nbed.friction_angle_deg = 20\n").empty());

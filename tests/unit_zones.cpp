@@ -10,6 +10,7 @@
 #include "catch.h"
 #include "checks/verify/placement.h"
 #include "friction_in_space.h"
+#include "law/bed/laws_of_four.h"
 #include "observe/budget.h"
 #include "observe/memory_archive.h"
 #include "scene/build_scene.h"
@@ -131,6 +132,37 @@ TEST_CASE("Zones have the same bits on any number of threads, and when a run goe
     for (const double residual : left_over.momentum_residual) CHECK(std::abs(residual) <= 1e-11 * impulse);
 }
 
+TEST_CASE("Zones on a terrain with x and y exchanged give the flow with x and y exchanged", "[zones]") {
+    const auto height = [](double x, double y) {
+        return 90 - 0.5 * x + 0.01 * (y - 59) * (y - 59) +
+               3 * std::exp(-((x - 90) * (x - 90) + (y - 55) * (y - 55)) / 60);
+    };
+    const auto law = [](double x, double y) { return bed::Voellmy{x < 70 ? 0.1 + 1e-3 * y : 0.5, 300.0 + x}; };
+    Scene along = slide(), across = scene_on(60, 80, 2.0, [&](double x, double y) { return height(y, x); });
+    along.bed = scene_on(80, 60, 2.0, height).bed;
+    across.bed_law = along.bed_law, across.particles = along.particles;
+    std::swap(across.particles.x, across.particles.y), std::swap(across.particles.vx, across.particles.vy);
+    along.friction = by_place<bed::Voellmy>(along, law);
+    across.friction = by_place<bed::Voellmy>(across, [&](double x, double y) { return law(y, x); });
+    DepthAveraged a(along), b(across);
+    run_to(a, 6.0), run_to(b, 6.0);
+    const Frame of_a = a.frame(), of_b = b.frame();
+    const double *depth = of_a.node("depth")->data, *other = of_b.node("depth")->data;
+    double most = 0.0, apart = 0.0;
+    for (Index j = 0; j < of_a.grid.ny; ++j)
+        for (Index i = 0; i < of_a.grid.nx; ++i) {
+            const double here = depth[j * of_a.grid.nx + i];
+            most = std::max(most, here);
+            apart = std::max(apart, std::abs(here - other[i * of_b.grid.nx + j]));
+        }
+    REQUIRE(most > 0.5);
+    CHECK(apart <= 1e-9 * most);  // round-off of sums in another order, as it grows in some hundred steps
+    CHECK(a.status().kinetic == Approx(b.status().kinetic).epsilon(1e-9));
+    DepthAveraged even(slide([&](Scene& s) { s.bed = along.bed; }));  // the zones matter
+    run_to(even, 6.0);
+    CHECK(std::abs(even.status().kinetic / a.status().kinetic - 1.0) > 0.05);
+}
+
 TEST_CASE("A layer holds where the friction of its zone holds it, asleep or not, and slides elsewhere", "[zones]") {
     for (const bool sleep : {true, false}) {
         Scene scene = scene_on(90, 40, 2.0, [](double x, double) { return -std::tan(20 * M_PI / 180) * x; });
@@ -153,6 +185,33 @@ TEST_CASE("A layer holds where the friction of its zone holds it, asleep or not,
         CHECK(held == 0.0);
         CHECK(slid > 5.0);  // g (sin - mu cos) 16 s^2 / 2 = 12 m along the slope
     }
+}
+
+TEST_CASE("Four nodes with numbers of their own leave what each leaves by itself, to the last bit", "[zones][law]") {
+    const auto check = [](const auto& laws) {
+        using Law = typename std::decay_t<decltype(laws)>::value_type;
+        const bed::LawsOfFour<Law> together({&laws[0], &laws[1], &laws[2], &laws[3]});
+        // From steps that friction hardly feels to such that stop, and to those beyond the series and the fraction.
+        for (const double dt : {1e-4, 0.05, 0.7, 9.0})
+            for (const double s0 : {0.0, 0.3, 14.0})
+                for (const double drive : {-2.0, 0.5, 6.0}) {
+                    const BedStateOf<Double4> bed{{9.8, 8.1, 7.3, 9.0},
+                                                  {0.01, 0.4, 3.0, 20.0},
+                                                  {1.0, 1.1, 1.3, 1.02},
+                                                  {1.0, 0.8, 0.7, 0.95},
+                                                  9.81,
+                                                  1800.0};
+                    const Double4 before = {s0, 0.9 * s0, 1.1 * s0, s0}, driven = before + dt * drive;
+                    const Double4 after = together.speed_after(bed, before, driven, dt);
+                    for (int n = 0; n < 4; ++n) {
+                        const BedState one{bed.normal_gravity[n], bed.thickness[n], bed.kappa[n],
+                                           bed.cosine[n],         bed.gravity,      bed.density};
+                        CHECK(after[n] == laws[static_cast<std::size_t>(n)].speed_after(one, before[n], driven[n], dt));
+                    }
+                }
+    };
+    check(std::vector<bed::Voellmy>{{0.1, 200}, {0.25, 1200}, {0.0, 400}, {0.6, 3000}});
+    check(std::vector<bed::Coulomb>{{0.1}, {0.25}, {0.0}, {0.6}});
 }
 
 TEST_CASE("A table has each law once, in the order of the nodes, and tells a parameter by its key", "[zones]") {

@@ -63,11 +63,26 @@ private:
         if (!table.given("vary") || !all || all->empty()) {
             table.wrong("vary", "found no [[ensemble.vary]]", "expected one or more", "name a key that varies");
         } else {
-            plan_.vary =
-                read_varied_keys(*all, "ensemble.vary", {plan_.file, plan_.method, plan_.method_name}, problems_);
+            plan_.vary = read_varied_keys(*all, "ensemble.vary",
+                                          {plan_.file, plan_.method, plan_.method_name, word_of_case("case", "kind"),
+                                           word_of_case("material", "bed", "law")},
+                                          problems_);
         }
         read_hazard_table(table);
         table.refuse_others("here");
+    }
+
+    /// A text of the case, or "". What is wrong with the case its first run says.
+    template <class... Keys>
+    std::string word_of_case(const char* table, Keys... keys) const {
+        try {
+            const toml::table root = toml::parse_file(plan_.case_file.string());
+            toml::node_view<const toml::node> node = root[table];
+            ((node = node[keys]), ...);
+            return node.value_or(std::string());
+        } catch (const toml::parse_error&) {
+            return "";
+        }
     }
 
     void read_hazard_table(CheckedTable& table) {

@@ -18,6 +18,7 @@ constexpr Index kMostSamples = 10'000'000;
 struct Vary {
     std::string key;
     Distribution distribution;
+    std::string prior = {};              ///< in words, where it follows from the kind of mass; "": the file gives it
     Index levels = 0;                    ///< of method "grid"; of a discrete distribution the number of its values
     std::vector<double> return_periods;  ///< of a discrete one whose values are scenarios [years]; else empty
 };

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "scene/parameter_priors.h"
 #include "scene/parameters.h"
 
 namespace frana {
@@ -30,6 +31,8 @@ public:
         : file_(context.file),
           method_(context.method),
           method_name_(context.method_name),
+          kind_(context.kind),
+          bed_law_(context.bed_law),
           vary_(vary),
           problems_(problems) {}
 
@@ -50,6 +53,8 @@ public:
         vary.distribution.kind = found->kind;
         if (found->kind == Kind::discrete)
             read_discrete(table, vary);
+        else if (!table.given("distribution") && !table.given("range") && take_prior(vary))
+            require_in_range(table, vary);
         else
             read_numbers(table, vary);
         if (method_ == Method::grid && found->kind != Kind::discrete)
@@ -65,6 +70,27 @@ private:
     void check_key(CheckedTable& table, const std::string& key) {
         const KeyProblem problem = problem_of_key(key, vary_);
         if (!problem.found.empty()) table.wrong("key", problem.found, problem.expected, problem.way_out);
+    }
+
+    /// What is likely of the kind of mass; false: nothing is known.
+    bool take_prior(Vary& vary) const {
+        const std::optional<ParameterPrior> prior = kind_.empty() ? std::nullopt : prior_of(kind_, vary.key, bed_law_);
+        if (!prior) return false;
+        using Shape = ParameterPrior::Shape;
+        Distribution& of = vary.distribution;
+        of.low = prior->a, of.high = prior->b;
+        std::string words = fmt::format("uniform, {:.4g} to {:.4g}", prior->a, prior->b);
+        if (prior->shape == Shape::triangular) {
+            of.kind = Kind::triangular, of.middle = prior->b, of.high = prior->c;
+            words = fmt::format("triangular, {:g} to {:g}, most likely {:g}", prior->a, prior->c, prior->b);
+        } else if (prior->shape == Shape::lognormal) {
+            of.kind = Kind::lognormal, of.middle = prior->a, of.spread = prior->b, of.low = 0.0, of.high = kInfinite;
+            words = fmt::format("lognormal, median {:g}, factor {:g}", prior->a, prior->b);
+        }
+        vary.prior =
+            fmt::format("{}: without a range it has the prior of case.kind = \"{}\": {}; see cases/PARAMETERS.md",
+                        vary.key, kind_, words);
+        return true;
     }
 
     void read_discrete(CheckedTable& table, Vary& vary) {
@@ -113,7 +139,8 @@ private:
             (triangular && !(of.middle >= of.low && of.middle <= of.high)))
             table.wrong("range", "found no range, or one that does not grow",
                         triangular ? "expected [lowest, most likely, highest]" : "expected [lowest, highest]",
-                        "write it so");
+                        kind_.empty() ? "write it so"
+                                      : fmt::format("write it so; case.kind = \"{}\" has no prior of it", kind_));
         const bool logarithmic = of.kind == Kind::loguniform || of.kind == Kind::lognormal;
         if (logarithmic && (!(of.low >= 0.0) || (of.kind == Kind::loguniform && of.low == 0.0)))
             table.wrong("range", fmt::format("found {:g}", of.low), "expected numbers above 0", "give such");
@@ -146,7 +173,7 @@ private:
 
     const std::filesystem::path& file_;
     const Method method_;
-    const std::string method_name_;
+    const std::string method_name_, kind_, bed_law_;
     std::vector<Vary>& vary_;
     Problems& problems_;
 };

@@ -10,6 +10,8 @@ struct VaryContext {
     const std::filesystem::path& file;
     Method method = Method::sobol;
     std::string method_name = "sobol";
+    std::string kind = {};     ///< case.kind of the case, whose priors a key without a range has; "": none
+    std::string bed_law = {};  ///< material.bed.law of the case
 };
 
 /// What is wrong with a key that is to vary; nothing: empty.

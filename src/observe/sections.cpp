@@ -40,7 +40,7 @@ Sections::Sections(const std::filesystem::path& run_dir, std::vector<SectionLine
         summaries_[n].name = lines_[n].name;
         summaries_[n].towards = across(lines_[n].line.back() - lines_[n].line.front(), lines_[n].to_right).normalized();
         tables_.emplace_back(run_dir / "sections" / (lines_[n].name + ".csv"),
-                             std::vector<std::string>{"t [s]", "discharge [m3/s]", "volume [m3]"});
+                             std::vector<std::string>{"t [s]", "discharge [m3/s]", "volume [m3]", "sediment [m3]"});
     }
 }
 
@@ -53,7 +53,8 @@ void Sections::step(const Status& now, const Probe& probe) {
         discharge_[n] = discharge;
         if (discharge > summary.peak) summary.peak = discharge, summary.peak_time = now.time;
         summary.volume = n < passed.size() ? passed[n] : TableWriter::empty;
-        tables_[n].add({now.time, discharge, summary.volume});
+        summary.sediment = lines_[n].solid_share * summary.volume;
+        tables_[n].add({now.time, discharge, summary.volume, summary.sediment});
     }
     time_ = now.time;
 }
@@ -69,6 +70,7 @@ void Sections::serialize(Archive& archive) {
         const Archive::Part part(archive, fmt::format("section_{}", n));
         SectionSummary& s = summaries_[n];
         archive.numbers("summary", {&s.volume, &s.integral, &s.peak, &s.peak_time});
+        s.sediment = lines_[n].solid_share * s.volume;
     }
     serialize_all(archive, tables_);
 }

@@ -297,13 +297,31 @@ private:
     }
 
     void cut_releases() {
+        NodeMarks scars(static_cast<std::size_t>(scene_.bed.geometry.size()), 0);
         for (std::size_t i = 0; i < releases_.size(); ++i) {
             const Index table = built_.releases[i].table;
             if (!case_.flag(fmt::format("release.{}.included_in_dem", table))) continue;
+            const NodeMarks marks = nodes_under(releases_[i], scene_.bed.geometry);
+            for (std::size_t k = 0; k < marks.size(); ++k) scars[k] |= marks[k];
             const double volume = cut_release(releases_[i], scene_.bed);
             scene_.log.push_back(
                 fmt::format("release.{}: its {:.6g} m3 are cut out of the bed (included_in_dem)", table, volume));
         }
+        remark_on_loose_scar(scars);
+    }
+
+    /// Of the part of a terrain that is held what lies farther on is not known.
+    void remark_on_loose_scar(const NodeMarks& scars) {
+        if (!scene_.erodible || scene_.wider) return;
+        const std::vector<double>& loose = scene_.erodible->depth.values;
+        double within = 0.0, all = 0.0;
+        for (std::size_t k = 0; k < scars.size(); ++k) all += loose[k], within += scars[k] ? loose[k] : 0.0;
+        if (!(all > 0.0) || within < all) return;
+        scene_.log.push_back(
+            fmt::format("{}: found loose material under releases with included_in_dem only; expected some on the way "
+                        "of the flow; it lies below the ground that is left when they are cut out, so give it "
+                        "elsewhere if that is not meant",
+                        case_.place("erodible.depth")));
     }
 
     const GridGeometry& terrain() const { return scene_.wider ? scene_.wider->grid : scene_.bed.geometry; }

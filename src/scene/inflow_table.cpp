@@ -33,13 +33,14 @@ std::string trimmed(const std::string& text) {
     return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(" \t\r\"") + 1 - begin);
 }
 
-/// Cells of a line; blanks part them only where no comma or semicolon does.
+/// Cells of a line; blanks part them only where no comma or semicolon does. Behind a last mark stands an empty one.
 std::vector<std::string> cells_of(const std::string& line) {
     const char mark = line.find(';') != std::string::npos ? ';' : line.find(',') != std::string::npos ? ',' : ' ';
     std::vector<std::string> cells;
     std::istringstream stream(line);
     std::string cell;
     while (mark == ' ' ? bool(stream >> cell) : bool(std::getline(stream, cell, mark))) cells.push_back(trimmed(cell));
+    if (mark != ' ' && !line.empty() && line[line.find_last_not_of(" \t\r")] == mark) cells.emplace_back();
     return cells;
 }
 
@@ -92,6 +93,9 @@ bool is_of_avaflow(const std::vector<std::string>& cells) {
 
 double number_of(const std::string& cell, const std::string& source, Index line) {
     const std::optional<double> value = number_in(cell);
+    if (cell.empty())
+        throw UserError(fmt::format("{}:{}: found a gap; expected a number in each column; fill it, or remove the row",
+                                    source, line));
     if (!value || !std::isfinite(*value))
         throw UserError(
             fmt::format("{}:{}: found \"{}\"; expected a number in each column; fill the gap", source, line, cell));
@@ -148,8 +152,10 @@ public:
     std::vector<std::string> cells(std::size_t columns, const std::string& source) const {
         std::vector<std::string> cells = cells_of(line_);
         if (cells.size() == columns) return cells;
-        throw UserError(fmt::format("{}:{}: found {} cells; expected {} as in the first line; correct the row", source,
-                                    number_, cells.size(), columns));
+        const bool gap = cells.size() < columns;
+        throw UserError(fmt::format("{}:{}: found {}, \"{}\"; expected {} columns as in the first line; {}", source,
+                                    number_, gap ? "a gap" : fmt::format("{} columns", cells.size()), trimmed(line_),
+                                    columns, gap ? "fill it, or remove the row" : "correct the row"));
     }
 
 private:

@@ -21,6 +21,9 @@ constexpr const char* salm =
 constexpr const char* martinelli = "Martinelli, Lang and Mears 1980, J. Glaciol.";
 constexpr const char* obrien = "O'Brien and Julien 1988, J. Hydraul. Eng. 114, table 2; Geotechnics 2025, 5, 37";
 constexpr const char* jop = "Jop, Forterre and Pouliquen 2006, Nature 441, 727";
+constexpr const char* frank =
+    "Frank et al. 2015, Nat. Hazards Earth Syst. Sci. 15, 2569, who fitted it at the Illgraben";
+constexpr const char* half_to_twice = "half to twice the published value";
 constexpr const char* in_common_use = "";
 
 }  // namespace
@@ -47,6 +50,7 @@ const std::vector<ParameterRange>& parameter_ranges() {
         {"snow", xi, "voellmy", 1200.0, 1600.0, "large design avalanches", martinelli},
         {"snow", xi, "voellmy", 700.0, 800.0, "hard slab, slow wet slab, soft slab through timber", martinelli},
         {"snow", density, "", 200.0, 400.0, "flowing snow", in_common_use},
+        {"snow", "erodible.energy", "", 5000.0, 5000.0, "default of com1DFA", "AvaFrame, configuration of com1DFA"},
         {"debris_flow", mu, "", 0.03, 0.40, "back-analysed events", in_common_use},
         {"debris_flow", xi, "voellmy", 100.0, 1000.0, "back-analysed events; granular ones lower, muddy ones higher",
          in_common_use},
@@ -54,6 +58,9 @@ const std::vector<ParameterRange>& parameter_ranges() {
         {"debris_flow", yield, "", 500.0, 5000.0, "field estimates", in_common_use},
         {"debris_flow", viscosity, "", 10.0, 1000.0, "field estimates", in_common_use},
         {"debris_flow", density, "", 1700.0, 2100.0, "flowing", in_common_use},
+        {"debris_flow", "erodible.rate", "", 0.0125, 0.05, half_to_twice, frank},
+        {"debris_flow", "erodible.threshold", "", 500.0, 2000.0, half_to_twice, frank},
+        {"debris_flow", "erodible.depth_per_stress", "", 0.5e-4, 2e-4, half_to_twice, frank},
         {"rock_avalanche", mu, "voellmy", 0.03, 0.35, "back-analysed events; on glaciers and wet ground lowest",
          in_common_use},
         {"rock_avalanche", xi, "voellmy", 100.0, 1000.0, "back-analysed events", in_common_use},

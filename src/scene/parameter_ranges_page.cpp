@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "scene/mud_table.h"
+#include "scene/parameter_priors.h"
 #include "scene/parameter_ranges.h"
 #include "scene/parameters.h"
 #include "scene/salm_table.h"
@@ -99,6 +100,23 @@ std::string mud_table() {
     return text;
 }
 
+std::string prior_text(const ParameterPrior& row) {
+    if (row.shape == ParameterPrior::Shape::lognormal)
+        return fmt::format("lognormal, median {:g}{}, factor {:g}", row.a, unit_of(row.key), row.b);
+    return fmt::format("triangular, {:g} to {:g}, most likely {:g}", row.a, row.c, row.b);
+}
+
+std::string priors_table() {
+    std::string text =
+        "\n## Priors of ensembles\n\nWhere `[[ensemble.vary]]` gives a key and no range, and the case its "
+        "`case.kind`, these are taken; without a row,\nall values of the kind's range are as likely. It is printed. "
+        "No source was read for them: they are wide, and a place to begin.\n\n| `case.kind` | Key | Bed law | "
+        "Prior |\n|---|---|---|---|\n";
+    for (const ParameterPrior& row : parameter_priors())
+        text += fmt::format("| `{}` | `{}` | {} | {} |\n", row.kind, row.key, row.law, prior_text(row));
+    return text;
+}
+
 constexpr const char* introduction =
     R"(# Friction parameters, with their sources
 
@@ -115,8 +133,8 @@ with `k` use k = g/xi.
 ## Kinds of mass
 
 `[case] kind = "snow"` says what moves. Values outside of the kind's ranges are then remarked upon, and the density has a
-default, which is remarked upon too. Nothing else follows from it: friction has no default. Each key's limits are the lowest and
-the highest of its rows for that bed law.
+default, which is remarked upon too. An ensemble has its priors. Nothing else follows from it: friction has no default. Each
+key's limits are the lowest and the highest of its rows for that bed law. A single value is no limit.
 
 )";
 
@@ -185,7 +203,7 @@ std::string ranges_in_words(const std::string& key) {
 std::string ranges_in_markdown() {
     std::string text = introduction + kinds_table();
     for (const MassKind& kind : mass_kinds()) text += ranges_of(kind.name, kind.name);
-    text += ranges_of("", "Grains in the laboratory");
+    text += ranges_of("", "Grains in the laboratory") + priors_table();
     return text + snow + salm_tables() + snow_notes + mud_table() + mud_notes + forest;
 }
 

@@ -112,6 +112,20 @@ void remark_on_depth(const CaseFile& file, const Raster& depth, Scene& scene) {
                                     scene.barriers.empty() ? "" : "; what barriers stand on is counted, but stays"));
 }
 
+/// Laws that know the flow's speed or depth alone let short waves of bed and flow grow near a Froude number of 1
+/// (checks/verify/README.md, "Waves on a flow that takes up its bed").
+void remark_on_waves(const CaseFile& file, const ErodibleBed& bed, Scene& scene) {
+    constexpr double kViscosity = 0.03;  // of density, depth and speed: measured there
+    const std::string& law = file.word("erodible.law");
+    const bool grows = law == "jump" || law == "energy" || law == "steady";
+    if (!grows || !bed.evolves || !std::holds_alternative<rheology::None>(scene.rheology)) return;
+    scene.log.push_back(fmt::format(
+        "{}: found \"{}\" without a viscosity; expected one if the flow is near a Froude number of 1, where "
+        "short waves on its bed grow, faster on finer grids; give material.rheology.law = \"newtonian\" "
+        "with a viscosity of {} times density, depth and speed ({:.3g} Pa s for a depth of 1 m)",
+        file.place("erodible.law"), law, kViscosity, kViscosity * scene.density * std::sqrt(scene.gravity)));
+}
+
 /// What ploughs takes all that lies in its way: that has to end somewhere.
 void require_extent(const CaseFile& file) {
     if (file.word("erodible.law") != "front" || file.given("erodible.outline") || file.is_text("erodible.depth"))
@@ -141,6 +155,7 @@ std::optional<ErodibleBed> read_erodible(const CaseFile& file, const GisReader& 
         !problems.attempt(file.place("erodible.outline"), [&] { keep_inside(file, reader, scene, bed.depth); }))
         return {};
     remark_on_depth(file, bed.depth, scene);
+    remark_on_waves(file, bed, scene);
     return bed;
 }
 

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/constants.h"
 #include "law/bed/normal_flow.h"
 #include "particles/generate.h"
+#include "particles/outline_area.h"
 #include "scene/inflow_facts.h"
 #include "scene/inflow_table.h"
 #include "scene/scene_parts.h"
@@ -67,7 +69,18 @@ private:
                             inflow_.name));
         inflow_.time = table.time, inflow_.discharge = table.discharge;
         if (!attempt(problems, "velocity", [&] { set_speed(table); })) return {};
+        remark_on_climb();
         return inflow_;
+    }
+
+    /// With a speed of its own a flow may climb; it is seldom meant.
+    void remark_on_climb() {
+        constexpr double kEven = 1e-6;
+        if (inflow_.slope >= -kEven) return;
+        scene_.log.push_back(
+            fmt::format("{}: found a line that the flow leaves up a slope of {:.3g} degrees; expected it to go down; "
+                        "move towards to the other side, unless this is meant",
+                        case_.place(prefix_ + "towards"), std::atan(-inflow_.slope) * constants::kRadian));
     }
 
     std::optional<Inflow> read_area(Problems& problems) {
@@ -106,6 +119,7 @@ private:
         options.per_cell = case_.number("particles.per_cell");
         std::vector<ReleaseReport> reports;
         std::vector<std::string> unused;
+        require_area(outline);
         const Seeds seeds = make_seeds({release}, bed_, options, reports, unused);
         inflow_.spacing = seeds.size.front();
         for (const double patch : seeds.volume) inflow_.area += patch;
@@ -117,6 +131,21 @@ private:
                             inflow_.area, cell * cell));
         for (Index p = 0; p < seeds.count(); ++p)
             inflow_.patches.push_back({{seeds.x[p], seeds.y[p]}, seeds.volume[p] / inflow_.area});
+    }
+
+    /// A line that is closed, or drawn to and fro, is no area.
+    void require_area(const Polygons& outline) const {
+        double area = 0.0, reach = 0.0;
+        const Rings rings = rings_of(outline, {bed_.geometry.x0, bed_.geometry.y0});
+        for (const auto& ring : rings) {
+            area += ring_area(ring);
+            for (const Vec2& corner : ring) reach = std::max(reach, (corner - ring.front()).squaredNorm());
+        }
+        constexpr double round_off = 1e-9;
+        if (std::abs(area) > round_off * reach) return;
+        throw UserError(
+            "found an outline without area, such as a line; expected the outline of an area; draw it around what "
+            "flows, or give it as inflow.line");
     }
 
     /// Between the outer nodes.
@@ -210,10 +239,7 @@ private:
     /// Not flat, and not across a ridge or a valley's floor where half goes the other way.
     void require_one_slope(double rise) const {
         constexpr double kFlat = 1e-6;
-        if (std::abs(rise) <= kFlat)
-            throw UserError(
-                "found flat ground under the line; expected a slope, which tells where the flow goes; give towards = "
-                "[x, y], a point on that side");
+        if (std::abs(rise) <= kFlat) throw UserError(why_no_side());
         double up = 0.0, all = 0.0;
         for (std::size_t k = 0; k + 1 < inflow_.line.size(); ++k) {
             const Vec2 piece = inflow_.line[k + 1] - inflow_.line[k];
@@ -232,6 +258,66 @@ private:
                             "the flow, not across a ridge; move it, or give towards = [x, y], a point on the side "
                             "that the flow goes to",
                             100.0 * up / all));
+    }
+
+    /// Means over a line of how the ground slopes: across it, of both senses; along it; and from it to both sides.
+    struct Slopes {
+        double across = 0.0, along = 0.0, off = 0.0;  ///< [1]
+    };
+    Slopes slopes_at(const Vec2& at, const Vec2& way) const {
+        constexpr double kOff = 2.0;  // cells
+        const GridGeometry& g = bed_.geometry;
+        const auto node = [&](const Vec2& place) {
+            return std::pair{node_of(place.x(), g.x0, g.nx), node_of(place.y(), g.y0, g.ny)};
+        };
+        const auto [i, j] = node(at);
+        const Vec2 right(way.y(), -way.x()), slope = node_gradient(bed_, i, j);
+        Slopes here{std::abs(slope.dot(right)), std::abs(slope.dot(way)), 0.0};
+        for (const double side : {-kOff, kOff}) {
+            const auto [a, b] = node(at + side * g.cell * right);
+            if (a < 0 || b < 0 || a >= g.nx || b >= g.ny || std::isnan(bed_.at(a, b))) continue;
+            here.off += (bed_.at(a, b) - bed_.at(i, j)) / (2.0 * kOff * g.cell);
+        }
+        return here;
+    }
+    Slopes slopes() const {
+        Slopes sum;
+        const double width = inflow_.width();
+        for (std::size_t k = 0; k + 1 < inflow_.line.size(); ++k) {
+            const Vec2 piece = inflow_.line[k + 1] - inflow_.line[k];
+            const auto parts = static_cast<Index>(std::ceil(2.0 * piece.norm() / bed_.geometry.cell));
+            const double share = piece.norm() / width / static_cast<double>(parts);
+            for (Index part = 0; part < parts; ++part) {
+                const double at = (static_cast<double>(part) + 0.5) / static_cast<double>(parts);
+                const Slopes here = slopes_at(inflow_.line[k] + at * piece, piece.normalized());
+                sum.across += share * here.across, sum.along += share * here.along, sum.off += share * here.off;
+            }
+        }
+        return sum;
+    }
+
+    /// Why the ground across the line does not slope on the whole.
+    std::string why_no_side() const {
+        constexpr double kEven = 1e-6;
+        const Slopes mean = slopes();
+        const auto degrees = [](double slope) { return std::atan(std::abs(slope)) * constants::kRadian; };
+        const char* const way_out = "give towards = [x, y], a point on the side that the flow goes to";
+        if (mean.across > kEven)
+            return fmt::format(
+                "found ground that slopes to one side of the line as much as to the other, by {:.3g} degrees; expected "
+                "a line across the flow, not across a ridge; move it, or {}",
+                degrees(mean.across), way_out);
+        if (mean.along > kEven)
+            return fmt::format(
+                "found a line that runs down the slope of {:.3g} degrees; expected one across the flow; turn it, or {}",
+                degrees(mean.along), way_out);
+        if (std::abs(mean.off) > kEven)
+            return fmt::format(
+                "found a line along {} by {:.3g} degrees; expected one across the flow; move it, or {}",
+                mean.off < 0.0 ? "a ridge, which falls to both sides" : "a valley's floor, which rises to both sides",
+                degrees(mean.off), way_out);
+        return fmt::format("found flat ground under the line; expected a slope, which tells where the flow goes; {}",
+                           way_out);
     }
 
     Hydrograph hydrograph() const {

@@ -72,7 +72,7 @@ void remark_on_kind(const CaseFile& file, const std::string& key, const std::str
     const std::string& kind = file.word("case.kind");
     const RangeKey known = range_key(meaning);
     const std::optional<Plausible> range = plausible(kind, known.key, file.word("material.bed.law"));
-    if (!range) return;
+    if (!range || range->low == range->high) return;  // one value that was published is no limit
     constexpr double round_off = 1e-9;
     const double value = file.number(key), low = known.scale(range->low), high = known.scale(range->high);
     if (value >= low * (1.0 - round_off) && value <= high * (1.0 + round_off)) return;
@@ -92,6 +92,8 @@ void remark_on_kind(const CaseFile& file, Scene& scene) {
         for (Index i = 0; i < file.count("material.zone"); ++i)
             remark_on_kind(file, fmt::format("material.zone.{}.{}", i, name), of_case, scene);
     }
+    for (const char* key : {"erodible.rate", "erodible.threshold", "erodible.depth_per_stress", "erodible.energy"})
+        if (file.has(key)) remark_on_kind(file, key, key, scene);
     for (const std::string name : {"mu", "friction_angle_deg", "xi", "manning_n", "yield_stress", "viscosity"}) {
         const std::string of_bed = "material.bed." + name;
         remark_on_kind(file, of_bed, of_bed, scene);

@@ -63,7 +63,7 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     }
     flow_.columns.single = scene.scheme.precision == Precision::single;
     if (!scene.sections.empty()) passages_.emplace(scene.sections, flow_.grid);
-    if (!scene.inflows.empty()) feed_.emplace(scene.inflows);
+    if (!scene.inflows.empty()) feed_.emplace(scene.inflows), supports_.emplace(flow_.grid.size());
     if (!scene.late.empty()) late_.emplace(scene.late, flow_.grid);
     choose_sleep();
     if (start == Start::resumed) return;

@@ -13,6 +13,7 @@
 #include "shallow/late.h"
 #include "shallow/mass_fit.h"
 #include "shallow/merge.h"
+#include "shallow/node_set.h"
 #include "shallow/passages.h"
 #include "shallow/peaks.h"
 #include "shallow/split.h"
@@ -127,6 +128,7 @@ private:
     double place_late(const LateRelease& release, PointSums& came);
     void enter(const Seeds& columns);
     void support_inflows();
+    void reach_supports();
     void fold_with_support();
     void leave_support_out(NodeSums& sums);
     double potential_of_support() const;
@@ -174,8 +176,9 @@ private:
     Seeds added_;                       ///< from outside, while the state that they belong to was put aside
     double mass_added_ = 0.0;           ///< that has entered [kg]
     bool aside_ = false;                ///< it comes back to a state that was put aside
-    std::vector<Supported>
-        supported_;  ///< nodes with depth of what is still to come in; the flow's own mass there [kg]
+    std::optional<NodeSet> supports_;   ///< nodes with depth of what is still to come in; nothing without inflows
+    std::vector<Supported> supported_;  ///< the same in that order; the flow's own mass there [kg]
+    std::vector<Index> support_tiles_;  ///< scratch
     struct NodePeaks {
         Index k;
         double depth, arrival, speed, pressure, dynamic_pressure;

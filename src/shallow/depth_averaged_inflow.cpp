@@ -10,17 +10,28 @@ namespace {
 
 constexpr double kSupport = 4.0;  ///< behind the line, beyond what passes over nodes look at [cells]
 
-/// Calls body(i, j) for the nodes that a column's sub-points may touch, of any shape; places in cells.
-template <class Body>
-void for_each_touched(double x, double y, double half, Body&& body) {
-    const auto first = [half](double u) { return static_cast<Index>(std::floor(u - half)) - 1; };
-    const auto last = [half](double u) { return static_cast<Index>(std::floor(u + half)) + 2; };
-    for (Index j = first(y); j <= last(y); ++j)
-        for (Index i = first(x); i <= last(x); ++i) body(i, j);
-}
+/// Nodes that a column's sub-points may touch, of any shape.
+struct Touched {
+    Index i0, i1, j0, j1;  ///< first and last
+    /// Of a place and half the way between sub-points [cells].
+    Touched(double x, double y, double half)
+        : i0(first(x - half)), i1(last(x + half)), j0(first(y - half)), j1(last(y + half)) {}
+    static Index first(double u) { return static_cast<Index>(std::floor(u)) - 1; }
+    static Index last(double u) { return static_cast<Index>(std::floor(u)) + 2; }
+    template <class Body>
+    void for_each(Body&& body) const {
+        for (Index j = j0; j <= j1; ++j)
+            for (Index i = i0; i <= i1; ++i) body(i, j);
+    }
+};
 
-Index tile_of_node(const TileGrid& grid, Index i, Index j) {
-    return (j + kTile) / kTile * grid.tiles_x() + (i + kTile) / kTile;
+/// Whether all tiles of those nodes are near material.
+bool all_in_work(const Flow& flow, const Touched& nodes) {
+    const auto tile = [](Index n) { return (n + kTile) / kTile; };
+    for (Index v = tile(nodes.j0); v <= tile(nodes.j1); ++v)
+        for (Index u = tile(nodes.i0); u <= tile(nodes.i1); ++u)
+            if (!flow.active.in_work[v * flow.grid.tiles_x() + u]) return false;
+    return true;
 }
 
 void spread(Flow& flow, const ColumnAt& column, const Edges& edges) {
@@ -35,12 +46,10 @@ void spread(Flow& flow, const ColumnAt& column, const Edges& edges) {
     }
 }
 
-/// The node, and those that walls fold it onto.
+/// The nodes that walls fold a node onto.
 template <class Body>
 void for_each_image(const Flow& flow, Index i, Index j, Body&& body) {
     const auto image = [](Index n, Index count) { return n < 0 ? -n : n >= count ? 2 * (count - 1) - n : n; };
-    body(flow.grid.at(i, j));
-    if (!flow.walls) return;
     const Index a = image(i, flow.grid.nx()), b = image(j, flow.grid.ny());
     if (a != i) body(flow.grid.at(a, j));
     if (b != j) body(flow.grid.at(i, b));
@@ -59,6 +68,7 @@ void DepthAveraged::choose_sleep() { flow_.scheme.sleep = sleeps_ && !(feed_ && 
 
 /// Before walls fold the deposit and the surface is made. Its nodes count as touched.
 void DepthAveraged::support_inflows() {
+    supports_->clear();
     supported_.clear();
     if (feed_->over()) return;
     const Seeds& behind = feed_->behind(status_.time, kSupport * flow_.cell);
@@ -66,28 +76,36 @@ void DepthAveraged::support_inflows() {
     const auto each = [&](auto&& body) {
         for (Index n = 0; n < behind.count(); ++n) {
             const double x = (behind.x[n] - g.x0) / g.cell, y = (behind.y[n] - g.y0) / g.cell;
-            const double edge = behind.size[n] / g.cell, half = edge * flow_.scheme.sub_point_reach;
-            bool near = true;  // otherwise no column is
-            for_each_touched(x, y, half, [&](Index i, Index j) {
-                near = near && flow_.active.in_work[tile_of_node(flow_.grid, i, j)];
-            });
-            if (near) body(ColumnAt{x, y, behind.volume[n] * flow_.density}, edge, half);
+            const double edge = behind.size[n] / g.cell;
+            const Touched nodes(x, y, edge * flow_.scheme.sub_point_reach);
+            // otherwise no column is near
+            if (all_in_work(flow_, nodes)) body(ColumnAt{x, y, behind.volume[n] * flow_.density}, edge, nodes);
         }
     };
-    each([&](const ColumnAt& column, double, double half) {
-        for_each_touched(column.x, column.y, half, [&](Index i, Index j) {
-            const Index k = flow_.grid.at(i, j);
-            flow_.in_reach[tile_of_node(flow_.grid, i, j)] |= group_of((i + kTile) % kTile, (j + kTile) % kTile);
-            for_each_image(flow_, i, j, [&](Index n) { supported_.push_back({n, flow_.nodes.column_mass[n]}); });
-        });
+    each([&](const ColumnAt&, double, const Touched& nodes) {
+        for (Index j = nodes.j0; j <= nodes.j1; ++j)
+            supports_->add(flow_.grid.at(nodes.i0, j), nodes.i1 - nodes.i0 + 1);
     });
-    if (supported_.empty()) return;
-    std::sort(supported_.begin(), supported_.end(), [](const Supported& a, const Supported& b) { return a.k < b.k; });
-    supported_.erase(std::unique(supported_.begin(), supported_.end(),
-                                 [](const Supported& a, const Supported& b) { return a.k == b.k; }),
-                     supported_.end());
-    each([&](const ColumnAt& column, double edge, double) { spread(flow_, column, {edge, 0.0, 0.0, edge}); });
+    reach_supports();
+    if (flow_.walls)
+        each([&](const ColumnAt&, double, const Touched& nodes) {
+            if (nodes.i0 >= 0 && nodes.j0 >= 0 && nodes.i1 < flow_.grid.nx() && nodes.j1 < flow_.grid.ny()) return;
+            nodes.for_each(
+                [&](Index i, Index j) { for_each_image(flow_, i, j, [&](Index image) { supports_->add(image); }); });
+        });
+    if (supports_->number() == 0) return;
+    supports_->for_each([&](Index k) { supported_.push_back({k, flow_.nodes.column_mass[k]}); });
+    each([&](const ColumnAt& column, double edge, const Touched&) { spread(flow_, column, {edge, 0.0, 0.0, edge}); });
     activate_all(flow_);
+}
+
+/// Where what is still to come stands, the deposit has touched the nodes.
+void DepthAveraged::reach_supports() {
+    const Index stride = flow_.grid.stride();
+    supports_->for_each([&](Index k) {
+        const Index i = k % stride - kTile, j = k / stride - kTile;
+        flow_.in_reach[flow_.grid.tile_of_node(i, j)] |= group_of((i + kTile) % kTile, (j + kTile) % kTile);
+    });
 }
 
 /// What holds an inflow up is folded too: what is left of a node's mass without it is the flow's own.
@@ -105,10 +123,7 @@ void DepthAveraged::fold_with_support() {
 
 /// Where a node stands among those; nothing where no inflow is held up there.
 std::optional<std::size_t> DepthAveraged::supported(Index k) const {
-    const auto found = std::lower_bound(supported_.begin(), supported_.end(), k,
-                                        [](const Supported& a, Index wanted) { return a.k < wanted; });
-    if (found == supported_.end() || found->k != k) return {};
-    return static_cast<std::size_t>(found - supported_.begin());
+    return supports_ ? supports_->place(k) : std::nullopt;
 }
 
 /// Depth of the flow itself at a node [m].
@@ -130,10 +145,13 @@ bool DepthAveraged::is_support(Index k) const {
 /// Sums over nodes, anew for the tiles that have some.
 void DepthAveraged::leave_support_out(NodeSums& sums) {
     sums.potential -= potential_of_support();
-    std::vector<Index> tiles;
+    std::vector<Index>& tiles = support_tiles_;
+    tiles.clear();
     const Index stride = flow_.grid.stride();
-    for (const Supported& node : supported_)
-        tiles.push_back(flow_.grid.tile_of_node(node.k % stride - kTile, node.k / stride - kTile));
+    for (const Supported& node : supported_) {
+        const Index tile = flow_.grid.tile_of_node(node.k % stride - kTile, node.k / stride - kTile);
+        if (tiles.empty() || tile != tiles.back()) tiles.push_back(tile);
+    }
     std::sort(tiles.begin(), tiles.end());
     tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
     for (const Index tile : tiles) {

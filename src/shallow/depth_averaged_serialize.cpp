@@ -134,8 +134,14 @@ void DepthAveraged::serialize_support(Archive& archive) {
     archive.array("own", own);
     if (!archive.loading()) return;
     if (nodes.size() != own.size()) throw misfit("its columns differ in length");
-    supported_.clear();
-    for (std::size_t n = 0; n < nodes.size(); ++n) supported_.push_back({nodes[n], own[n]});
+    supports_->clear();
+    for (const Index k : nodes) {
+        if (k < 0 || k >= flow_.grid.size()) throw misfit("its nodes are not those of the grid");
+        supports_->add(k);
+    }
+    if (supports_->number() != nodes.size()) throw misfit("a node is there twice");
+    supported_.resize(nodes.size());
+    for (std::size_t n = 0; n < nodes.size(); ++n) supported_[*supports_->place(nodes[n])] = {nodes[n], own[n]};
 }
 
 /// Those whose nodes a step may change: of the work list, and where what is still to come may enter.

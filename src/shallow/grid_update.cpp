@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "law/bed/laws_of_four.h"
 #include "law/bed/node_friction.h"
 #include "shallow/grid_update_bed.h"
 #include "shallow/lateral.h"
@@ -78,6 +79,32 @@ Real resisting_depth(const Flow& flow, Index k) {
     return depth;
 }
 
+/// Each node has a law of that kind of its own: as LawOfEachNode, but the kernel holds the formula.
+template <class Law>
+struct TableOf {
+    using One = Law;
+};
+template <class Law>
+inline constexpr bool kIsTable = false;
+template <class Law>
+inline constexpr bool kIsTable<TableOf<Law>> = true;
+
+/// law_at() of these too.
+template <class Real, class Law>
+[[gnu::always_inline]] inline decltype(auto) law_here(const Law& law, const std::optional<NodeLaws>& laws, Index k) {
+    if constexpr (kIsTable<Law>) {
+        const auto& of = *std::get_if<std::vector<typename Law::One>>(&laws->laws);
+        const auto& place = laws->place;
+        if constexpr (std::is_same_v<Real, Double4>)
+            return bed::LawsOfFour<typename Law::One>(
+                {&of[place[k]], &of[place[k + 1]], &of[place[k + 2]], &of[place[k + 3]]});
+        else
+            return (of[place[k]]);
+    } else {
+        return law_at<Real>(law, laws, k);
+    }
+}
+
 template <class Law, class Terrain>
 class Kernel final : public GridUpdateKernel {
 public:
@@ -116,7 +143,7 @@ public:
             Node<double> node = prepared(flow, k);
             for (double* driving : {&node.ex, &node.ey, &node.acceleration_x, &node.acceleration_y}) *driving *= kFirm;
             const typename Terrain::template Bed<double> bed(flow, k);
-            const auto& law = law_at<double>(law_, flow.laws, k);
+            const auto& law = law_here<double>(law_, flow.laws, k);
             const Updated<double> after = updated(flow, bed, node, law, 1.0);
             held = after.vx == 0.0 && after.vy == 0.0 && rests_midway(flow, bed, node, law);
         });
@@ -172,7 +199,7 @@ private:
             inside(flow, i, j)) {
             const Node<Double4> node = prepared_four(flow, k);
             const auto after = updated(flow, typename Terrain::template Bed<Double4>(flow, k), node,
-                                       law_at<Double4>(law_, flow.laws, k), dt);
+                                       law_here<Double4>(law_, flow.laws, k), dt);
             add(flow, node, after, 1.0, work.four);
             Double4 out[4];
             transpose(after.vx, after.vy, node.depth, wave_at(flow, k, node), out);
@@ -204,7 +231,7 @@ private:
             return;
         }
         const auto after = updated(flow, typename Terrain::template Bed<Double4>(flow, k), four,
-                                   law_at<Double4>(law_, flow.laws, k), dt);
+                                   law_here<Double4>(law_, flow.laws, k), dt);
         for (int n = 0; n <= last; ++n)
             if (share[static_cast<std::size_t>(n)] > 0.0)
                 take(flow, k + n, four.at(n), after.at(n), share[static_cast<std::size_t>(n)], sums);
@@ -217,7 +244,7 @@ private:
     void update_one(Flow& flow, Index k, const Node<double>& node, double dt, double share, Sums<double>& sums) {
         const typename Terrain::template Bed<double> bed(flow, k);
         take(flow, k, node,
-             dt > 0.0 ? updated(flow, bed, node, law_at<double>(law_, flow.laws, k), dt) : resting_clock(bed, node),
+             dt > 0.0 ? updated(flow, bed, node, law_here<double>(law_, flow.laws, k), dt) : resting_clock(bed, node),
              share, sums);
     }
 
@@ -415,11 +442,18 @@ private:
 
 template <class Terrain>
 std::unique_ptr<GridUpdateKernel> with_law(const Scene& scene) {
-    if (scene.bed_laws())
-        return std::make_unique<Kernel<LawOfEachNode, Terrain>>(LawOfEachNode{}, scene.scheme.paper_pressure);
+    const bool on_points = scene.scheme.paper_pressure;
+    if (const auto* laws = scene.bed_laws())
+        return std::visit(
+            [&](const auto& table) -> std::unique_ptr<GridUpdateKernel> {
+                using One = typename std::decay_t<decltype(table)>::value_type;
+                using Law = std::conditional_t<bed::kSideBySide<One>, TableOf<One>, LawOfEachNode>;
+                return std::make_unique<Kernel<Law, Terrain>>(Law{}, on_points);
+            },
+            laws->laws);
     return std::visit(
         [&](const auto& law) -> std::unique_ptr<GridUpdateKernel> {
-            return std::make_unique<Kernel<std::decay_t<decltype(law)>, Terrain>>(law, scene.scheme.paper_pressure);
+            return std::make_unique<Kernel<std::decay_t<decltype(law)>, Terrain>>(law, on_points);
         },
         scene.bed_law);
 }

@@ -1,5 +1,8 @@
 #include "shallow/node_laws.h"
 
+#include <algorithm>
+
+#include "law/bed/laws_of_four.h"
 #include "law/bed/node_friction.h"
 #include "mpm/on_storage.h"
 
@@ -8,15 +11,20 @@ namespace {
 
 /// Where zones meet, and on rasters, four nodes have different laws.
 template <class Law>
-Double4 one_by_one(const std::vector<Law>& laws, const std::array<std::uint32_t, 4>& place,
-                   const BedStateOf<Double4>& bed, const Double4& s0, const Double4& driven, double dt) {
-    Double4 speed = {};
-    for (int n = 0; n < 4; ++n) {
-        const BedState one{bed.normal_gravity[n], bed.thickness[n], bed.kappa[n],
-                           bed.cosine[n],         bed.gravity,      bed.density};
-        speed[n] = laws[place[static_cast<std::size_t>(n)]].speed_after(one, s0[n], driven[n], dt);
+Double4 each_by_its_own(const std::vector<Law>& laws, const std::array<std::uint32_t, 4>& place,
+                        const BedStateOf<Double4>& bed, const Double4& s0, const Double4& driven, double dt) {
+    if constexpr (bed::kSideBySide<Law>) {
+        const bed::LawsOfFour<Law> here({&laws[place[0]], &laws[place[1]], &laws[place[2]], &laws[place[3]]});
+        return here.speed_after(bed, s0, driven, dt);
+    } else {
+        Double4 speed = {};
+        for (int n = 0; n < 4; ++n) {
+            const BedState one{bed.normal_gravity[n], bed.thickness[n], bed.kappa[n],
+                               bed.cosine[n],         bed.gravity,      bed.density};
+            speed[n] = laws[place[static_cast<std::size_t>(n)]].speed_after(one, s0[n], driven[n], dt);
+        }
+        return speed;
     }
-    return speed;
 }
 
 }  // namespace
@@ -34,8 +42,8 @@ void LawsHere<Double4>::brake(const BedStateOf<Double4>& bed, const Double4& s0,
     const bool same = place[0] == place[1] && place[0] == place[2] && place[0] == place[3];
     std::visit(
         [&](const auto& laws) {
-            speed =
-                same ? speeds_after(laws[place[0]], bed, s0, driven, dt) : one_by_one(laws, place, bed, s0, driven, dt);
+            speed = same ? speeds_after(laws[place[0]], bed, s0, driven, dt)
+                         : each_by_its_own(laws, place, bed, s0, driven, dt);
         },
         all->laws);
 }

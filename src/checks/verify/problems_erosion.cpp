@@ -214,7 +214,8 @@ Measurement run_lake(const Setup& setup) {
     double fastest = 0.0, taken = 0.0;
     for (const ErosionLaw& law :
          {ErosionLaw(erosion::Growth{0.1}), ErosionLaw(erosion::Steady{0.1}), ErosionLaw(erosion::Shear{0.1, 0.0, 1.0}),
-          ErosionLaw(erosion::Energy{10.0}), ErosionLaw(erosion::Jump{0.0})}) {
+          ErosionLaw(erosion::Energy{10.0}), ErosionLaw(erosion::Jump{0.0}), ErosionLaw(erosion::Front{}),
+          ErosionLaw(erosion::Mechanical{0.05, 0.1})}) {
         Scene scene = scene_of(lake_island(), setup, Placement::full_jitter);
         add_bed(scene, law, 0.0, 2.0);
         scene.erodible->evolves = true;
@@ -274,7 +275,7 @@ std::vector<Problem> erosion_problems() {
                  {0, "growth_error", 1e-12, "exact in time"},
                  mass};
     Problem lake{
-        "erosion_lake", "the lake around an island over a loose bed, five laws: nothing is taken", {50}, {}, run_lake};
+        "erosion_lake", "the lake around an island over a loose bed, seven laws: nothing is taken", {50}, {}, run_lake};
     lake.gates = {{0, "max_speed", 0.0, "rest to the last bit"}, {0, "taken", 0.0, "what rests takes nothing"}};
     return {constant, growth, voellmy, trench, cap, lake};
 }

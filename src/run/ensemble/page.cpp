@@ -194,7 +194,8 @@ std::string page_of(const EnsemblePlan& plan, const EnsembleBase& base, const En
             "\n\nNo maps are drawn, since the runs hold a part of the terrain only (`output.extent = \"terrain\"` "
             "holds all).";
     page += fmt::format("\n\nMethod \"{}\", seed {}. What varies:\n\n", plan.method_name, plan.seed);
-    for (const Vary& vary : plan.vary) page += fmt::format("- `{}`\n", vary.key);
+    for (const Vary& vary : plan.vary)
+        page += vary.prior.empty() ? fmt::format("- `{}`\n", vary.key) : fmt::format("- {}\n", vary.prior);
     page += "\nFiles:\n\n";
     for (const std::string& file : summary.files) page += fmt::format("- {}\n", file);
     return page + "\nA share of runs is the probability of an event only as far as what varies, and how, is known.\n";

@@ -378,16 +378,19 @@ std::string barriers(const RunRecord& r) {
 std::string sections(const RunRecord& r) {
     if (r.sections.empty()) return "";
     std::string text =
-        "## Sections\n\n| Section | Positive towards | Volume that passed | Largest discharge | Integral of the "
-        "discharge |\n"
-        "|---|---|---|---|---|\n";
+        "## Sections\n\n| Section | Positive towards | Volume that passed | Sediment | Largest discharge | Integral of "
+        "the discharge |\n"
+        "|---|---|---|---|---|---|\n";
     for (const SectionSummary& s : r.sections) {
         const double azimuth = std::fmod(std::atan2(s.towards.x(), s.towards.y()) * constants::kRadian + 360.0, 360.0);
-        text += fmt::format("| {} | {:.0f} degrees from north | {:.6g} m3 | {:.4g} m3/s at {:.4g} s | {:.4g} m3 |\n",
-                            s.name, azimuth, s.volume, s.peak, s.peak_time, s.integral);
+        text += fmt::format(
+            "| {} | {:.0f} degrees from north | {:.6g} m3 | {:.6g} m3 | {:.4g} m3/s at {:.4g} s | {:.4g} m3 |\n",
+            s.name, azimuth, s.volume, s.sediment, s.peak, s.peak_time, s.integral);
     }
     return text +
-           "\nThe volume is counted by the columns that passed and is exact; the discharge is that of the nodes.\n\n";
+           "\nThe volume is counted by the columns that passed and is exact; the discharge is that of the nodes. "
+           "Sediment is the solid part of the volume: `material.bed.solid_fraction` of it where the bed law has one, "
+           "otherwise all.\n\n";
 }
 
 std::string friction(const RunRecord& r) {

@@ -78,6 +78,7 @@ ShapeLayer section_layer(const Scene& scene, const RunRecord& record) {
                 layer.shapes.push_back({section.line,
                                         {{"name", section.name},
                                          {"volume_m3", passed.volume},
+                                         {"sediment_m3", passed.sediment},
                                          {"peak_discharge_m3_s", passed.peak},
                                          {"peak_s", passed.peak_time}}});
     return layer;

@@ -205,13 +205,19 @@ int threads_for_files() {
     return known && limit.rlim_cur == RLIM_INFINITY ? omp_get_max_threads() : 1;
 }
 
+/// Of one phase all is solid, but of a bed law that knows the share of grains.
+double solid_share(const Scene& scene) {
+    const auto* granular = std::get_if<bed::Pouliquen>(&scene.bed_law);
+    return granular ? granular->solid_fraction : 1.0;
+}
+
 /// What passes the sections of the scene; nothing without any.
 std::unique_ptr<Observer> make_sections(const Scene& scene, const fs::path& run_dir,
                                         std::vector<SectionSummary>& summaries) {
     std::vector<SectionLine> lines;
     const GridGeometry& terrain = scene.wider ? scene.wider->grid : scene.bed.geometry;
     for (const Section& section : scene.sections)
-        lines.push_back({section.name, section.line, section.to_right, terrain.pixel_extent()});
+        lines.push_back({section.name, section.line, section.to_right, terrain.pixel_extent(), solid_share(scene)});
     if (lines.empty()) return {};
     return std::make_unique<Sections>(run_dir, lines, 0.5 * scene.bed.geometry.cell, summaries);
 }

@@ -292,6 +292,7 @@ Json sections_json(const std::vector<SectionSummary>& sections) {
         list.push_back({{"name", s.name},
                         {"towards", {s.towards.x(), s.towards.y()}},
                         {"volume", s.volume},
+                        {"sediment", s.sediment},
                         {"discharge_integral", s.integral},
                         {"peak_discharge", s.peak},
                         {"peak_discharge_time", s.peak_time}});
