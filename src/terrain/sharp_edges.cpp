@@ -70,12 +70,6 @@ SharpEdge edge_of(const Touching& touching, const Side& side, const std::vector<
     return edge;
 }
 
-/// Square of the distance of an edge from a box.
-double square_to(const SharpEdge& edge, const Vec3& low, const Vec3& high) {
-    const Vec3 to = edge.from + edge.length * edge.along;
-    return (edge.from.cwiseMin(to) - high).cwiseMax(low - edge.from.cwiseMax(to)).cwiseMax(0.0).squaredNorm();
-}
-
 }  // namespace
 
 SharpEdges::SharpEdges(const TriangleMesh& mesh, const Vec3& origin, const Vec3& end, double reach) {
@@ -96,12 +90,25 @@ SharpEdges::SharpEdges(const TriangleMesh& mesh, const Vec3& origin, const Vec3&
     block_ = kBlocksOfReach * reach;
     for (int k = 0; k < 3; ++k)
         blocks_[static_cast<std::size_t>(k)] = 1 + static_cast<Index>((end[k] - origin[k]) / block_);
+    std::vector<std::vector<std::size_t>> of_block(static_cast<std::size_t>(blocks_[0] * blocks_[1] * blocks_[2]));
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+        std::array<Index, 3> low{}, high{};
+        for (int k = 0; k < 3; ++k) {
+            const auto axis = static_cast<std::size_t>(k);
+            const double from = edges_[e].from[k], to = from + edges_[e].length * edges_[e].along[k];
+            const auto block = [&](double x) {
+                return static_cast<Index>(std::clamp(x / block_, 0.0, static_cast<double>(blocks_[axis] - 1)));
+            };
+            low[axis] = block(std::min(from, to) - reach), high[axis] = block(std::max(from, to) + reach);
+        }
+        for (Index k = low[2]; k <= high[2]; ++k)
+            for (Index j = low[1]; j <= high[1]; ++j)
+                for (Index i = low[0]; i <= high[0]; ++i)
+                    of_block[static_cast<std::size_t>((k * blocks_[1] + j) * blocks_[0] + i)].push_back(e);
+    }
     first_.push_back(0);
-    for (Index n = 0; n < blocks_[0] * blocks_[1] * blocks_[2]; ++n) {
-        const Index i = n % blocks_[0], j = n / blocks_[0] % blocks_[1], k = n / (blocks_[0] * blocks_[1]);
-        const Vec3 low = block_ * Vec3(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
-        for (std::size_t e = 0; e < edges_.size(); ++e)
-            if (square_to(edges_[e], low, low + Vec3::Constant(block_)) < reach * reach) listed_.push_back(e);
+    for (const auto& list : of_block) {
+        listed_.insert(listed_.end(), list.begin(), list.end());
         first_.push_back(listed_.size());
     }
 }
