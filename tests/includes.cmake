@@ -90,7 +90,7 @@ room(src/structured base law law/bed observe mpm shallow water)
 room(src/coupling base terrain observe particles convert run mpm scene shallow solid3d water structured)
 # What is asked of them.
 room(src/ensemble base terrain compare observe run scene)
-room(src/checks/verify base law/bed law/erosion observe convert mpm scene shallow solid3d water structured coupling)
+room(src/checks/verify base terrain law/bed law/erosion observe convert mpm scene shallow solid3d water structured coupling)
 room(src/checks/bench base observe mpm scene shallow solid3d structured coupling)
 room(src/checks/fuzz base observe run scene shallow coupling)
 # Files, pictures, the program.

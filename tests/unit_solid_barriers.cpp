@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "catch.h"
+#include "checks/verify/box_mesh.h"
 #include "fake_gis.h"
 #include "prism_maker.h"
 #include "solid3d/face_ledger.h"
@@ -125,7 +126,11 @@ TEST_CASE("In corners of a barrier of any width no image stands where material m
 
 TEST_CASE("Mirror particles of a lattice around a box fill it once, beside its edges and corners too", "[solid]") {
     constexpr double kCell = 1.0, kPart = 0.5, kDeep = 1.5;
-    const std::vector<Surface> box = {Surface::barrier(Prism(rectangle(0, 0, 8, 8), 6.0))};
+    const auto [name, surface] = GENERATE(
+        table<std::string, Surface>({{"outline", Surface::barrier(Prism(rectangle(0, 0, 8, 8), 6.0))},
+                                     {"mesh", Surface::barrier(verify::box_as_mesh({0, 0, -14}, {8, 8, 6}, kCell))}}));
+    CAPTURE(name);
+    const std::vector<Surface> box = {surface};
     std::map<std::array<long, 3>, double> filled;
     const auto key = [&](const Vec3& x) {
         return std::array{std::lround(4.0 * x.x()), std::lround(4.0 * x.y()), std::lround(4.0 * x.z())};
@@ -235,6 +240,40 @@ TEST_CASE("A wall along a line keeps its wet face on the line", "[solid]") {
     CHECK_THROWS_WITH(Prism(ring({{0, 0}, {1, 1}}), 1.0), Catch::Contains("three corners or more"));
     CHECK_THROWS_WITH(Prism({}, 1.0), Catch::Contains("no polygon"));
     CHECK_THROWS_WITH(Prism(ring({{0, 0}, {1, 1}, {1, 1}, {0, 1}}), 1.0), Catch::Contains("twice in a row"));
+}
+
+TEST_CASE("A box as a mesh has the contacts of its outline, beside its edges and corners too", "[solid]") {
+    constexpr double kCell = 0.5;
+    const Surface outline = Surface::barrier(Prism(rectangle(0, 0, 4, 3), 2.0)),
+                  mesh = Surface::barrier(verify::box_as_mesh({0, 0, -8}, {4, 3, 2}, kCell));
+    Dice dice;
+    int shared = 0;
+    for (int n = 0; n < 20000; ++n) {
+        const Vec3 x(-2 + 8 * dice(), -2 + 7 * dice(), -1 + 5 * dice());
+        CAPTURE(x.x(), x.y(), x.z());
+        Contact from[kMostContacts], to[kMostContacts];
+        int count = contacts(outline, x, kCell, from), same = contacts(mesh, x, kCell, to);
+        if (count == 0) continue;
+        const Vec3 q = (x - Vec3(2, 1.5, -3)).cwiseAbs() - Vec3(2, 1.5, 5);
+        const bool ridge =
+            q.maxCoeff() < 0.0 && (q.array() > q.maxCoeff() - 1e-6).count() > 1;  // either face is nearest
+        const bool face = (q.array() > 0.0).count() <= 1;
+        if (!ridge) {  // edges: trilinear, 0.25 between nodes; at most 0.064 too much, in the middle before a corner
+            REQUIRE(to[0].distance == Approx(from[0].distance).margin(face ? 1e-12 : 0.08));
+            if (face) REQUIRE((to[0].normal - from[0].normal).norm() < 1e-12);
+        }
+        const MetFaces met = faces_at_edge({}, outline, x, kCell, from, count),
+                       as = faces_at_edge({}, mesh, x, kCell, to, same);
+        if (ridge || met.all < 2) continue;
+        REQUIRE(as.faced == met.faced);
+        REQUIRE(as.all == met.all);
+        for (int a = 0; a < met.all; ++a)
+            REQUIRE(std::any_of(to, to + as.all, [&](const Contact& c) {
+                return (c.normal - from[a].normal).norm() < 1e-9 && std::abs(c.distance - from[a].distance) < 1e-9;
+            }));
+        ++shared;
+    }
+    CHECK(shared > 1000);
 }
 
 TEST_CASE("A ball as a field of distances: values, faces, ways into it", "[solid]") {

@@ -13,8 +13,6 @@ namespace frana {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Normals nearer to each other than this, 30 degrees, are one face that bends: its mirror particles would count twice.
-constexpr double kSameFace = 0.866;
 /// Of a side's length and of a height [1]: so far crossings beyond a side's end count, so that nothing passes
 /// between two faces by round-off.
 constexpr double kSeam = 1e-9;
@@ -29,21 +27,6 @@ double area_of(const std::vector<Vec2>& ring) {
 }
 
 Vec3 level(const Vec2& v) { return {v.x(), v.y(), 0.0}; }
-
-bool bends_from(const Contact* list, int count, const Vec3& normal) {
-    for (int n = 0; n < count; ++n)
-        if (list[n].normal.dot(normal) > kSameFace) return false;
-    return true;
-}
-
-/// Puts a contact among the nearest so far.
-void keep_nearest(Contact* list, int& count, const Contact& contact) {
-    if (count == kMostContacts && !(contact.distance < list[count - 1].distance)) return;
-    if (count < kMostContacts) ++count;
-    int at = count - 1;
-    for (; at > 0 && contact.distance < list[at - 1].distance; --at) list[at] = list[at - 1];
-    list[at] = contact;
-}
 
 }  // namespace
 
@@ -300,20 +283,9 @@ MetFaces Prism::faces_at_edge(const Vec3& x, double cell, Contact* list, int cou
     if (count == 0) return {0, 0};
     Contact others[kMostContacts];
     const int most = reached(x, cell, others);
-    const Vec3 first = list[0].normal;
-    const auto listed = [&](int face) {
-        return std::any_of(list, list + count, [&](const Contact& c) { return c.face == face && is_face(c); });
-    };
-    int kept = 0;
-    for (int n = 0; n < most; ++n)
-        if (!listed(others[n].face) && others[n].normal.dot(first) > kOpposite) others[kept++] = others[n];
-    if (kept > 0)
-        count =
-            static_cast<int>(std::remove_if(list, list + count, [&](const Contact& c) { return !is_face(c); }) - list);
-    const int faced = count;
-    for (int n = 0; n < kept && count < kMostContacts; ++n)
-        if (bends_from(list, count, others[n].normal)) list[count++] = others[n];
-    return {faced, count};
+    return joined(
+        list, count, others, most, [&](const Contact& c) { return is_face(c); },
+        [](const Contact& a, const Contact& b) { return a.face == b.face; });
 }
 
 double Prism::mirror_share(const Contact& contact, const Vec3& place, double blend) const {
@@ -330,13 +302,7 @@ double Prism::mirror_share(const Contact& contact, const Vec3& place, double ble
             if (t >= 0.0 && t <= edge.length && depth >= 0.0) take(depth);
         }
     };
-    double nearest = contact.distance;
-    for_each_other([&](double depth) { nearest = std::min(nearest, depth); });
-    const auto weight = [&](double depth) { return std::max(0.0, blend - (depth - nearest)); };
-    const double own = weight(contact.distance);
-    double sum = own;  // the nearest of all has the weight `blend`
-    for_each_other([&](double depth) { sum += weight(depth); });
-    return own / sum;
+    return shared_place(contact.distance, blend, for_each_other);
 }
 
 double Prism::thickness(const Vec3& from, const Vec3& way) const {

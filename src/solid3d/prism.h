@@ -3,15 +3,10 @@
 #include <utility>
 #include <vector>
 
-#include "terrain/contact.h"
+#include "solid3d/edge_faces.h"
 #include "terrain/raster.h"
 
 namespace frana {
-
-/// Faces that a node meets: first those that it is before, or behind first, then others.
-struct MetFaces {
-    int faced, all;
-};
 
 /// The area of polygons that do not overlap one another, from their top downwards. Faces are numbered: the
 /// sides in the order of the polygons' edges, parts and rings in turn, and the top behind the last of them.

@@ -417,9 +417,8 @@ private:
         bool thin = false;
         for (int n = 1; n < faces; ++n) thin |= found[0].normal.dot(found[n].normal) < kOpposite;
         thin = thin && found[0].distance <= 0.0;
-        MetFaces met{faces, faces};
-        if (!thin && barrier.kind == Surface::Kind::prism)
-            met = barrier.prism->faces_at_edge(x, body.grid.cell(), found, faces);
+        const MetFaces met =
+            thin ? MetFaces{faces, faces} : faces_at_edge(body.surfaces, barrier, x, body.grid.cell(), found, faces);
         const SolidBody::Node &real = body.real[node], &pressure = body.mirror_force[node];
         const Vec3 pressed = Vec3(real.x + pressure.x, real.y + pressure.y, real.z + pressure.z) / real.m;
         for (int n = 0; n < met.all && count < kMostTouched; ++n) {

@@ -1,9 +1,11 @@
 #include "solid3d/surfaces.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "solid3d/bed_height.h"
+#include "solid3d/mesh_edges.h"
 
 namespace frana {
 namespace {
@@ -67,8 +69,30 @@ Contact contact(const Surface& surface, const Vec3& x) {
 
 int contacts(const Surface& barrier, const Vec3& x, double cell, Contact* list) {
     if (barrier.kind == Surface::Kind::prism) return barrier.prism->contacts(x, cell, list);
-    list[0] = barrier.shape->contact(x);
+    list[0] = sharp_contact(*barrier.shape, x);
     return 1;
+}
+
+namespace {
+
+/// What lies behind planes or the ground, or on them to `seam` [m], and faces them.
+Hidden behind(const std::vector<Surface>& surfaces, double seam) {
+    return [&surfaces, seam](const Vec3& x, const Vec3& normal) {
+        return std::any_of(surfaces.begin(), surfaces.end(), [&](const Surface& s) {
+            if (s.is_barrier()) return false;
+            const Contact c = contact(s, x);
+            return c.distance < seam && c.normal.dot(normal) <= kOpposite;
+        });
+    };
+}
+constexpr double kSeam = 1e-6;  // [cells]: round-off of places
+
+}  // namespace
+
+MetFaces faces_at_edge(const std::vector<Surface>& surfaces, const Surface& barrier, const Vec3& x, double cell,
+                       Contact* list, int count) {
+    if (barrier.kind == Surface::Kind::prism) return barrier.prism->faces_at_edge(x, cell, list, count);
+    return faces_at_edge(*barrier.shape, x, cell, behind(surfaces, kSeam * cell), list, count);
 }
 
 bool enters(const Surface& barrier, const Vec3& from, const Vec3& to, Entry& entry) {
@@ -153,7 +177,7 @@ MirrorParticles::MirrorParticles(const std::vector<Surface>& surfaces, SurfaceSe
     for (; near != 0 && count < kMostNear; near &= near - 1) {
         const Surface& surface = surfaces[static_cast<std::size_t>(__builtin_ctz(near))];
         if (surface.is_barrier()) {
-            count = near_barrier(surface, x, cell, list, count);
+            count = near_barrier(surfaces, surface, x, cell, list, count);
             continue;
         }
         const Contact c = contact(surface, x);
@@ -165,36 +189,36 @@ MirrorParticles::MirrorParticles(const std::vector<Surface>& surfaces, SurfaceSe
 
 namespace {
 
-/// Of the mirror particle that a point before `contact` shows at `place` in a shape: the share of Prism::mirror_share. A
-/// field of distances tells one face only, the nearest: where it is another one than the point's, both blend. Faces that
-/// lie 30 degrees apart or less are one that bends; opposite ones share nothing.
-double mirror_share(const DistanceField& shape, const Contact& contact, const Vec3& place, double blend) {
-    constexpr double kSameFace = 0.866;
-    const Contact nearest = shape.contact(place);
-    const double turned = nearest.normal.dot(contact.normal);
-    if (turned > kSameFace || turned <= kOpposite) return 1.0;
-    const double own = std::clamp(blend - (contact.distance + nearest.distance), 0.0, blend);
-    return own / (own + blend);
+/// Of a barrier; without end where that lies behind another surface.
+double thickness(const std::vector<Surface>& surfaces, const Surface& barrier, const Vec3& from, const Vec3& way,
+                 double cell) {
+    const double thick = thickness(barrier, from, way);
+    const bool hidden = barrier.kind == Surface::Kind::shape && std::isfinite(thick) &&
+                        behind(surfaces, kSeam * cell)(from + thick * way, way);
+    return hidden ? std::numeric_limits<double>::infinity() : thick;
 }
 
 /// Of a barrier.
-double mirror_share(const Surface& barrier, const Contact& contact, const Vec3& x, double cell) {
+double mirror_share(const std::vector<Surface>& surfaces, const Surface& barrier, const Contact& contact, const Vec3& x,
+                    double cell) {
     constexpr double kBlend = 0.5;  // [cells], about the distance of points
     const Vec3 place = x - 2.0 * contact.distance * contact.normal;
-    return barrier.kind == Surface::Kind::prism ? barrier.prism->mirror_share(contact, place, kBlend * cell)
-                                                : mirror_share(*barrier.shape, contact, place, kBlend * cell);
+    return barrier.kind == Surface::Kind::prism
+               ? barrier.prism->mirror_share(contact, place, kBlend * cell)
+               : mirror_share(*barrier.shape, x, contact, place, kBlend * cell, behind(surfaces, kSeam * cell));
 }
 
 }  // namespace
 
-int MirrorParticles::near_barrier(const Surface& surface, const Vec3& x, double cell, Near* list, int count) {
+int MirrorParticles::near_barrier(const std::vector<Surface>& surfaces, const Surface& surface, const Vec3& x,
+                                  double cell, Near* list, int count) {
     Contact found[kMostContacts];
     const int faces = contacts(surface, x, cell, found);
     for (const Contact* c = found; c < found + faces && count < kMostNear; ++c) {
         if (c->distance < 0.0 || c->distance >= mirror_reach(c->normal) * cell) continue;
-        const double share = mirror_share(surface, *c, x, cell);
+        const double share = mirror_share(surfaces, surface, *c, x, cell);
         if (!(share > 0.0)) continue;
-        const double thick = thickness(surface, x - c->distance * c->normal, -c->normal);
+        const double thick = thickness(surfaces, surface, x - c->distance * c->normal, -c->normal, cell);
         list[count++] = {*c, surface.hold == Hold::stuck, thick, share, true};
     }
     return count;

@@ -58,6 +58,11 @@ Contact contact(const Surface& surface, const Vec3& x);
 
 /// All faces of a barrier that a point in cells of that size can meet, at most kMostContacts.
 int contacts(const Surface& barrier, const Vec3& x, double cell, Contact* list);
+/// Beside an edge that stands out a node carries pressure of all its faces: puts those that are not among the `count` of
+/// `list` behind them, in place of the one direction to the edge. Faces of a mesh that lie behind others of `surfaces`, as
+/// a house's foot below the ground, are none.
+MetFaces faces_at_edge(const std::vector<Surface>& surfaces, const Surface& barrier, const Vec3& x, double cell,
+                       Contact* list, int count);
 /// Whether the way between two places, the first outside, goes into a barrier.
 bool enters(const Surface& barrier, const Vec3& from, const Vec3& to, Entry& entry);
 /// How far a barrier reaches on from a place on its surface into the unit direction `way` [m].
@@ -136,7 +141,8 @@ private:
         bool bends() const { return stuck && thick == std::numeric_limits<double>::infinity(); }
     };
     static constexpr int kMostNear = 4, kMost = 14;
-    static int near_barrier(const Surface& surface, const Vec3& x, double cell, Near* list, int count);
+    static int near_barrier(const std::vector<Surface>& surfaces, const Surface& surface, const Vec3& x, double cell,
+                            Near* list, int count);
     void reflect(const Near* near, int count, const Vec3& x);
     static bool corner(const Near* near, int count, int n);
     static void slide_along(MirrorParticle& mirror, const Near& near, const Mat3& turn);

@@ -5,15 +5,12 @@
 #include <limits>
 
 namespace frana {
-namespace {
 
-int face_of(const Vec3& normal) {
+int DistanceField::face_of(const Vec3& normal) {
     Index axis = 0;
     normal.cwiseAbs().maxCoeff(&axis);
     return static_cast<int>(2 * axis + (normal[axis] > 0.0 ? 1 : 0));
 }
-
-}  // namespace
 
 Contact DistanceField::contact(const Vec3& x) const {
     Index first[3];
@@ -64,8 +61,12 @@ bool DistanceField::enters(const Vec3& from, const Vec3& to, Entry& entry) const
 
 double DistanceField::thickness(const Vec3& from, const Vec3& way) const {
     const double longest = (end() - origin).norm();
-    for (double far = spacing; far < longest; far += spacing)
-        if (!inside(from + far * way)) return far;
+    double before = 0.0;
+    for (double far = spacing; far < longest; far += spacing) {
+        const double here = contact(from + far * way).distance;
+        if (here >= 0.0) return far - (before < 0.0 ? spacing * here / (here - before) : 0.0);
+        before = here;
+    }
     return std::numeric_limits<double>::infinity();
 }
 

@@ -162,6 +162,9 @@ private:
 
 void measure_distances(const TriangleMesh& mesh, DistanceField& field) {
     expect(!mesh.triangles.empty(), "distances from no triangles");
+    constexpr double kReach =
+        18.0;  // spacings: of mirror particles in cells of two of them, 1.5 times kLongestReach and 1
+    field.sharp = SharpEdges(mesh, field.origin, field.end(), kReach * field.spacing);
     const MeshTree tree(mesh);
     const Index rows = field.nodes[1] * field.nodes[2];
 #pragma omp parallel for schedule(dynamic, 16)

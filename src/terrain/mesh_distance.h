@@ -4,7 +4,7 @@
 
 namespace frana {
 
-/// Fills a field with the signed distances from a closed mesh whose triangles all run the same way round: below zero on
+/// Fills a field with its sharp edges, and with the signed distances from a closed mesh whose triangles all run the same way round: below zero on
 /// the side that they turn away from. On all threads, with the same bits on any number of them.
 void measure_distances(const TriangleMesh& mesh, DistanceField& field);
 
