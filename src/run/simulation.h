@@ -43,7 +43,7 @@ public:
                "comes later as a release or an inflow of the case";
     }
     /// Adds columns between two steps: mass and momentum come in as those of inflows do (Status::mass_in). While the state is
-    /// put aside they enter at once, and once more where it comes back: up to a step before the time at which they were given.
+    /// put aside they wait for the step after it.
     virtual void add(const Seeds&) { throw InternalError("internal error: this model takes no material from outside"); }
     /// The ground that the run works on now, where that has grown beyond the scene's; frames lie within it.
     virtual const Raster* ground() const { return nullptr; }

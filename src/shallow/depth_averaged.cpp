@@ -181,6 +181,7 @@ void DepthAveraged::advance(double until) {
     if (apart) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_velocity_dt); });
     arrive(points);
     if (late_) enter_late();
+    if (!aside_ && added_.count() > 0) enter_added();
 }
 
 /// Grid updates the nodes for a step of `dt` or, where forces drive them much farther than the step was chosen for, a

@@ -126,7 +126,7 @@ private:
     void take_late(const std::vector<const LateRelease*>& releases);
     template <class Real>
     double place_late(const LateRelease& release, PointSums& came);
-    void enter(const Seeds& columns);
+    void enter_added();
     void support_inflows();
     void reach_supports();
     void fold_with_support();
@@ -173,7 +173,7 @@ private:
     TileSorter sorter_;
     std::optional<Feed> feed_;          ///< nothing without inflows
     std::optional<LateReleases> late_;  ///< nothing without late releases
-    Seeds added_;                       ///< from outside, while the state that they belong to was put aside
+    Seeds added_;                       ///< from outside, that wait for the next step
     double mass_added_ = 0.0;           ///< that has entered [kg]
     bool aside_ = false;                ///< it comes back to a state that was put aside
     std::optional<NodeSet> supports_;   ///< nodes with depth of what is still to come in; nothing without inflows

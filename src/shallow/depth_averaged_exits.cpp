@@ -212,14 +212,15 @@ std::string DepthAveraged::why_not_add(const Seeds& columns) const {
 }
 
 void DepthAveraged::add(const Seeds& columns) {
-    if (aside_) added_.append(columns, 0, columns.count());
-    enter(columns);
+    added_.append(columns, 0, columns.count());
+    if (!aside_) enter_added();
 }
 
 /// As a release whose time has come.
-void DepthAveraged::enter(const Seeds& columns) {
+void DepthAveraged::enter_added() {
     LateRelease release;
-    release.seeds = columns;
+    release.seeds = std::move(added_);
+    added_ = {};
     release.first_id = splitter_.next_id();
     splitter_.set_next_id(release.first_id + release.seeds.count());
     mass_added_ += release.volume() * flow_.density;

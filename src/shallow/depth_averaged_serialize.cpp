@@ -5,7 +5,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "mpm/stored_points.h"
 #include "shallow/depth_averaged.h"
@@ -68,7 +67,6 @@ void DepthAveraged::serialize(Archive& archive) {
     flow_.rest.some_asleep = false;  // what sleeps is found again; it changes no bit
     activate_all(flow_);
     raise_surface();
-    if (archive.aside() && added_.count() > 0) enter(std::exchange(added_, {}));
 }
 
 void DepthAveraged::serialize_points(Archive& archive) {

@@ -52,9 +52,7 @@ public:
             if (!flow.rest.gathers[n]) return;
             Sums sums;
             touch_motions(flow, n);
-            for_each_batch(flow, n, [&](Index first, Index end, bool) {
-                for_each_four(first, end, [&](Index p, int lanes) { gather_four(flow, p, lanes, dt, sums); });
-            });
+            for_each_batch(flow, n, [&](Index first, Index end, bool) { gather_batch(flow, first, end, dt, sums); });
             store_gathered(flow, n, sums);
         });
         note_changed(flow);
@@ -73,7 +71,7 @@ public:
             Sums moved, deposited;
             StencilMarks marks = flow.marks_of(tile);
             for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
-                for_each_four(first, end, [&](Index p, int lanes) { gather_four(flow, p, lanes, dt, moved); });
+                gather_batch(flow, first, end, dt, moved);
                 if (moved.rare.bad < 0) deposit_batch(flow, first, end, cap, at_side, marks, deposited);
             });
             flow.reach[tile] = marks.reach(kReachBefore, kReachAfter);
@@ -177,8 +175,15 @@ private:
         });
     }
 
+    /// Not inlined, nor is deposit_batch: where a product and a sum become one rounding is the compiler's choice at each place,
+    /// and the bits must not hang on which pass calls them.
+    [[gnu::noinline]] void gather_batch(Flow& flow, Index first, Index end, double dt, Sums& sums) {
+        for_each_four(first, end, [&](Index p, int lanes) { gather_four(flow, p, lanes, dt, sums); });
+    }
+
     /// Stresses first: a chain of divisions and roots that points wait for side by side.
-    void deposit_batch(Flow& flow, Index first, Index end, double cap, bool at_side, StencilMarks& marks, Sums& sums) {
+    [[gnu::noinline]] void deposit_batch(Flow& flow, Index first, Index end, double cap, bool at_side,
+                                         StencilMarks& marks, Sums& sums) {
         PlaneOf<Double4> internal_force[kBatch / 4];
         if constexpr (kStress) {
             Double4 shear[kBatch / 4];

@@ -16,6 +16,7 @@ class Mass(InFolder):
     def setUp(self):
         super().setUp()
         self.case["time.stop_at_rest"] = False
+        self.case["scheme.cfl"] = 0.25  # what is added enters with a step: these are shorter than outputs are apart
 
     def test_mass_comes_in_and_is_booked(self):
         with self.case.run(self.path("out"), threads=1) as run:
