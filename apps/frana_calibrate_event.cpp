@@ -37,18 +37,6 @@ Raster around(const EnsembleBase& base) {
     return like;
 }
 
-/// Marks on the pixels of a run, which are some of theirs, or more; there 0.
-Raster marks_on(const GridGeometry& grid, const Raster& marks) {
-    Raster here = Raster::filled(grid, 0.0);
-    const GridGeometry& from = marks.geometry;
-    const auto left = static_cast<Index>(std::lround((grid.x0 - from.x0) / grid.cell));
-    const auto low = static_cast<Index>(std::lround((grid.y0 - from.y0) / grid.cell));
-    for (Index j = std::max<Index>(0, -low); j < std::min(grid.ny, from.ny - low); ++j)
-        for (Index i = std::max<Index>(0, -left); i < std::min(grid.nx, from.nx - left); ++i)
-            here.at(i, j) = marks.at(i + left, j + low);
-    return here;
-}
-
 /// Nothing lies where the flow never came.
 void zero_where_unknown(Raster& raster) {
     for (double& value : raster.values)
@@ -184,7 +172,7 @@ private:
         const Raster* change = of(rasters, "bed_change");
         if (!event_.counts(Evidence::bed_change) || !change) return;
         std::optional<Raster> later;
-        if (event_.later_) later = marks_on(change->geometry, *event_.later_);
+        if (event_.later_) later = part_of(*event_.later_, box_of(change->geometry, event_.later_->geometry).value());
         note_blocks(Evidence::bed_change,
                     surface_change(*change, lying, of(rasters, "arrival_time"), later ? &*later : nullptr),
                     *event_.survey_.bed_change, found.bed_change ? found.bed_change->unsurveyed.all() : 0.0);

@@ -6,7 +6,7 @@
 #include "growing_slope.h"
 #include "observe/budget.h"
 #include "run/memory_state.h"
-#include "state_bits.h"
+#include "same_run.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -99,7 +99,7 @@ TEST_CASE("What is added while the state is put aside enters after the step that
     const Seeds more = cap_at(60.0);
     DepthAveraged run(moving()), reference(moving());
     go_to(run, 1.0), go_to(reference, 1.0);
-    const auto before = bits(run);
+    const auto before = state_bits(run);
     MemoryState aside;
     aside.save(run);
     run.advance(1.01);
@@ -108,7 +108,7 @@ TEST_CASE("What is added while the state is put aside enters after the step that
     run.advance(1.02);
     CHECK(run.status().mass_in == 0.0);
     aside.load(run);
-    CHECK((bits(run) == before));
+    CHECK((state_bits(run) == before));
     run.advance(1e3), reference.advance(1e3);
     CHECK(run.status().time == reference.status().time);
     reference.add(more);

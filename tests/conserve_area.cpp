@@ -5,9 +5,9 @@
 #include "catch.h"
 #include "observe/budget.h"
 #include "observe/memory_archive.h"
+#include "same_run.h"
 #include "shallow/depth_averaged.h"
 #include "shallow/feed.h"
-#include "state_bits.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -172,14 +172,14 @@ TEST_CASE("An area goes on in the middle of its table with the same bits, on any
         straight.advance(10.0);
     }
     REQUIRE(kept.size() > 3);
-    const auto expected = bits(straight);
+    const auto expected = state_bits(straight);
     for (std::size_t n = 0; n < kept.size(); ++n) {
         omp_set_num_threads(n % 2 == 0 ? 4 : 2);
         DepthAveraged resumed(scene, Start::resumed);
         resumed.serialize(kept[n].rewind());
         INFO("kept at " << resumed.status().time << " s");
         run_to(resumed, 10.0);
-        CHECK((bits(resumed) == expected));
+        CHECK((state_bits(resumed) == expected));
     }
     omp_set_num_threads(threads);
 }

@@ -11,8 +11,8 @@
 #include "observe/budget.h"
 #include "observe/memory_archive.h"
 #include "run/memory_state.h"
+#include "same_run.h"
 #include "shallow/depth_averaged.h"
-#include "state_bits.h"
 #include "threads_of_test.h"
 
 using namespace frana;
@@ -392,8 +392,8 @@ TEST_CASE("A deposition that nothing has rested long enough for changes no bit o
     DepthAveraged without(slope([](Scene& s) { s.deposition.reset(); }));
     run_to(with, 20.0);
     run_to(without, 20.0);
-    auto of_with = bits(with);
-    for (const auto& [name, entry] : bits(without)) {
+    auto of_with = state_bits(with);
+    for (const auto& [name, entry] : state_bits(without)) {
         INFO(name);
         if (name != "status/numbers") CHECK((of_with.at(name) == entry));
     }
@@ -434,10 +434,10 @@ TEST_CASE("What sleeps becomes bed in the same step as what does not", "[deposit
     }
     REQUIRE(sleeps.status().bed.deposited > 0.0);
     CHECK((partly > 0 || rest < 5.0));
-    auto of_awake = bits(awake);
+    auto of_awake = state_bits(awake);
     for (const char* name : {"bed/fresh", "bed/z", "points/x", "points/mass", "status/numbers"}) {
         INFO(name);
-        CHECK((of_awake.at(name) == bits(sleeps).at(name)));
+        CHECK((of_awake.at(name) == state_bits(sleeps).at(name)));
     }
 }
 

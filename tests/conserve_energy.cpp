@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "analytic_scene.h"
+#include "base/constants.h"
 #include "catch.h"
 
 using namespace frana;
@@ -63,8 +64,9 @@ TEST_CASE("The energy ledger closes to second order under friction, to first ord
 TEST_CASE("A fast flow wins no energy on a bed that it would leave", "[conserve]") {
     for (const double cell : {5.0, 2.5}) {
         const auto nodes = [&](double length) { return static_cast<Index>(length / cell) + 1; };
-        Scene scene = scene_on(nodes(1500), nodes(60), cell,
-                               [](double x, double) { return 900 - 0.6 * x + 1.5 * std::sin(2.0 * M_PI * x / 60.0); });
+        Scene scene = scene_on(nodes(1500), nodes(60), cell, [](double x, double) {
+            return 900 - 0.6 * x + 1.5 * std::sin(2.0 * constants::kPi * x / 60.0);
+        });
         scene.sides = Sides::wall;
         scene.bed_law = bed::None{};
         fill(scene, [](double x, double) { return std::max(0.0, 1.0 - std::pow((x - 80) / 40, 2)); });

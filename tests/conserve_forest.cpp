@@ -9,8 +9,8 @@
 #include "checks/verify/placement.h"
 #include "observe/budget.h"
 #include "observe/memory_archive.h"
+#include "same_run.h"
 #include "shallow/depth_averaged.h"
-#include "state_bits.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -59,16 +59,6 @@ Scene sheet(double gravity, const Function& pressure) {
     std::fill(scene.particles.vy.begin(), scene.particles.vy.end(), 0.5);
     scene.forest = forest(scene, pressure);
     return scene;
-}
-
-void check_same(DepthAveraged& a, DepthAveraged& b) {
-    const auto of_a = bits(a), of_b = bits(b);
-    REQUIRE(of_a.size() == of_b.size());
-    REQUIRE(of_a.count("bed/fresh") == 1);
-    for (const auto& [name, entry] : of_a) {
-        INFO(name);
-        CHECK((of_b.at(name) == entry));
-    }
 }
 
 double worst_mass_error(DepthAveraged& simulation, double end, double* of_bed) {
@@ -248,13 +238,13 @@ TEST_CASE("A forest has the same bits on any number of threads, and after the ru
         omp_set_num_threads(threads);
         DepthAveraged again(scene);
         for (const double at : {3.0, 5.0, 7.0}) run_to(again, at);
-        check_same(again, straight);
+        check_same(again, straight, "bed/fresh");
     }
     for (MemoryArchive& archive : kept) {
         DepthAveraged resumed(scene, Start::resumed);
         resumed.serialize(archive.rewind());
         for (const double at : {3.0, 5.0, 7.0}) run_to(resumed, at);
-        check_same(resumed, straight);
+        check_same(resumed, straight, "bed/fresh");
     }
     omp_set_num_threads(before);
 }
@@ -265,8 +255,8 @@ TEST_CASE("Trees where no flow comes change no bit of it, and sleep changes none
     DepthAveraged without(slope([](Scene& s) { s.forest.reset(); }));
     run_to(with, 6.0);
     run_to(without, 6.0);
-    auto of_with = bits(with);
-    for (const auto& [name, entry] : bits(without)) {
+    auto of_with = state_bits(with);
+    for (const auto& [name, entry] : state_bits(without)) {
         INFO(name);
         if (name != "status/numbers") CHECK((of_with.at(name) == entry));
     }
@@ -277,10 +267,10 @@ TEST_CASE("Trees where no flow comes change no bit of it, and sleep changes none
     run_to(sleeps, 12.0);
     run_to(awake, 12.0);
     REQUIRE(sleeps.status().bed.deposited > 0.0);
-    auto of_awake = bits(awake);
+    auto of_awake = state_bits(awake);
     for (const char* name : {"bed/fresh", "bed/z", "points/x", "points/mass", "status/numbers"}) {
         INFO(name);
-        CHECK((of_awake.at(name) == bits(sleeps).at(name)));
+        CHECK((of_awake.at(name) == state_bits(sleeps).at(name)));
     }
 }
 

@@ -9,6 +9,7 @@
 #include "coupling/structured_run.h"
 #include "friction_in_space.h"
 #include "observe/memory_archive.h"
+#include "same_run.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -61,12 +62,7 @@ void check_same_bits(const Scene& uniform, double end) {
     const std::unique_ptr<Simulation> plain = make_simulation(uniform), of_nodes = make_simulation(scene);
     run_to(*plain, end), run_to(*of_nodes, end);
     REQUIRE(plain->status().step > 20);
-    const auto a = state_bits(*plain), b = state_bits(*of_nodes);
-    REQUIRE(a.size() == b.size());
-    for (const auto& [name, entry] : a) {
-        INFO(name);
-        CHECK((b.at(name) == entry));
-    }
+    check_same(*of_nodes, *plain);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "growing_slope.h"
 #include "observe/memory_archive.h"
 #include "run/run_loop.h"
-#include "state_bits.h"
+#include "same_run.h"
 #include "threads_of_test.h"
 
 using namespace frana;
@@ -165,14 +165,14 @@ TEST_CASE("An inflow goes on in the middle of its table with the same bits, on a
             straight.advance(7.0);
         }
         REQUIRE(kept.size() > 4);
-        const auto expected = bits(straight);
+        const auto expected = state_bits(straight);
         for (std::size_t n = 0; n < kept.size(); ++n) {
             omp_set_num_threads(n % 2 == 0 ? 4 : 2);
             DepthAveraged resumed(scene, Start::resumed);
             resumed.serialize(kept[n].rewind());
             INFO("kept at " << resumed.status().time << " s");
             run_to(resumed, 7.0);
-            CHECK((bits(resumed) == expected));
+            CHECK((state_bits(resumed) == expected));
         }
     }
 }

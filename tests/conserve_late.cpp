@@ -12,7 +12,7 @@
 #include "observe/memory_archive.h"
 #include "run/memory_state.h"
 #include "run/run_loop.h"
-#include "state_bits.h"
+#include "same_run.h"
 #include "threads_of_test.h"
 
 using namespace frana;
@@ -170,7 +170,7 @@ TEST_CASE("A state put aside before a release enters comes back with all that it
                 numbers.push_back(number);
         return numbers;
     };
-    const auto before = bits(simulation);
+    const auto before = state_bits(simulation);
     const std::vector<double> bed_before = bed();
     MemoryState aside;
     aside.save(simulation);
@@ -180,7 +180,7 @@ TEST_CASE("A state put aside before a release enters comes back with all that it
     CHECK((bed() != bed_before));
     aside.load(simulation);
     CHECK((bed() == bed_before));
-    const auto after = bits(simulation);
+    const auto after = state_bits(simulation);
     REQUIRE(after.size() == before.size());
     for (const auto& [name, entry] : before) {
         INFO(name);
@@ -244,20 +244,20 @@ TEST_CASE("Late releases have the same bits on any number of threads, and when a
     }
     REQUIRE(kept.size() > 4);
     for (const std::size_t n : {0, 1, 3}) REQUIRE(entry(straight.extras(), n).entered.has_value());
-    const auto expected = bits(straight);
+    const auto expected = state_bits(straight);
     for (std::size_t n = 0; n < kept.size(); ++n) {
         omp_set_num_threads(n % 2 == 0 ? 4 : 2);
         DepthAveraged resumed(scene, Start::resumed);
         resumed.serialize(kept[n].rewind());
         INFO("kept at " << resumed.status().time << " s");
         run_to(resumed, 7.0);
-        CHECK((bits(resumed) == expected));
+        CHECK((state_bits(resumed) == expected));
     }
     for (const int threads : {2, 4}) {
         omp_set_num_threads(threads);
         DepthAveraged again(scene);
         run_to(again, 7.0);
-        CHECK((bits(again) == expected));
+        CHECK((state_bits(again) == expected));
     }
 }
 

@@ -10,7 +10,7 @@
 #include "growing_slide.h"
 #include "observe/budget.h"
 #include "observe/memory_archive.h"
-#include "state_bits.h"
+#include "same_run.h"
 #include "threads_of_test.h"
 
 using namespace frana;

@@ -4,7 +4,7 @@
 #include "analytic_scene.h"
 #include "catch.h"
 #include "checks/verify/placement.h"
-#include "observe/memory_archive.h"
+#include "same_run.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -24,33 +24,9 @@ Scene slide(const std::function<void(Scene&)>& edit = {}) {
     return scene;
 }
 
-using Bits = std::map<std::string, MemoryArchive::Entry>;
-
-/// Everything that a kept state consists of but the wall time.
-Bits bits(const MemoryArchive& archive) {
-    Bits entries = archive.entries();
-    for (auto entry = entries.begin(); entry != entries.end();)
-        entry = entry->first.rfind("clock/", 0) == 0 ? entries.erase(entry) : std::next(entry);
-    return entries;
-}
-
-Bits bits(DepthAveraged& simulation) {
-    MemoryArchive archive;
-    simulation.serialize(archive);
-    return bits(archive);
-}
-
-void check_same(const Bits& found, const Bits& expected) {
-    REQUIRE(found.size() == expected.size());
-    REQUIRE(found.size() > 20);
-    for (const auto& [name, entry] : expected) {
-        INFO(name);
-        CHECK((found.at(name) == entry));
-    }
-}
-
-void check_same(DepthAveraged& resumed, DepthAveraged& straight) {
-    check_same(bits(resumed), bits(straight));
+/// With all fields of their frames.
+void check_same_frames(DepthAveraged& resumed, DepthAveraged& straight) {
+    check_same(resumed, straight);
     const Frame a = resumed.frame(), b = straight.frame();
     REQUIRE(a.nodes.size() == b.nodes.size());
     const auto same = [](const Field& x, const Field& y) {
@@ -81,10 +57,10 @@ std::unique_ptr<DepthAveraged> check_resume(const Scene& scene, double end, int 
         DepthAveraged resumed(scene, Start::resumed);
         resumed.serialize(state.rewind());
         INFO("kept at step " << resumed.status().step);
-        check_same(bits(resumed), bits(state));
+        check_same(state_bits(resumed), without_clock(state));
         resumed.frame();  // a look at a state changes nothing
         while (resumed.status().time < end) resumed.advance(resumed.status().time < output ? output : end);
-        check_same(resumed, *straight);
+        check_same_frames(resumed, *straight);
         const MotionQuery fast{0.5 * straight->status().mean_speed, 0.5 * end};
         CHECK(resumed.motion(fast).moving == straight->motion(fast).moving);
         CHECK(resumed.motion(fast).fronts == straight->motion(fast).fronts);
@@ -92,14 +68,6 @@ std::unique_ptr<DepthAveraged> check_resume(const Scene& scene, double end, int 
     }
     return straight;
 }
-
-class Threads {
-public:
-    ~Threads() { omp_set_num_threads(before_); }
-
-private:
-    int before_ = omp_get_max_threads();
-};
 
 }  // namespace
 

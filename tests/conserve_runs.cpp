@@ -2,6 +2,7 @@
 #include <omp.h>
 
 #include "analytic_scene.h"
+#include "base/constants.h"
 #include "catch.h"
 
 using namespace frana;
@@ -16,7 +17,7 @@ Scene obstacle(double cell = 1.0) {
         return 60 - x / 3 + 15 * std::exp(-((x - 50) * (x - 50) + (y - 10) * (y - 10)) / 7);
     });
     scene.density = 1200;
-    scene.bed_law = bed::Voellmy{std::tan(12 * M_PI / 180), 200};
+    scene.bed_law = bed::Voellmy{std::tan(12 * constants::kPi / 180.0), 200};
     scene.rheology = rheology::Newtonian{10};
     scene.scheme.curvature_length = 0.0;
     fill(scene, [](double x, double y) { return x > 10 && x < 40 && y > 1.2 && y < 18.8 ? 2.0 : 0.0; });

@@ -9,6 +9,7 @@
 #include "observe/memory_archive.h"
 #include "observe/sections.h"
 #include "run/run_loop.h"
+#include "threads_of_test.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -52,14 +53,6 @@ double volume_beyond(const DepthAveraged& run) {
         if (beyond(run.flow().cell * c.x[p], run.flow().cell * c.y[p])) mass += c.mass[p];
     return mass / run.flow().density;
 }
-
-class Threads {
-public:
-    ~Threads() { omp_set_num_threads(before_); }
-
-private:
-    int before_ = omp_get_max_threads();
-};
 
 }  // namespace
 

@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "base/constants.h"
 #include "base/error.h"
 #include "catch.h"
 #include "checks/verify/library.h"
@@ -260,7 +261,7 @@ TEST_CASE("A viscous sheet has its speeds on a floor that holds it, whether node
 
 /// A slice of mud 0.9 m thick that comes with 15 m/s down a slope of 25 degrees, onto a floor that holds it.
 SolidScene thrown_mud(double cell) {
-    constexpr double density = 1500.0, sound = 150.0, angle = 25.0 * M_PI / 180.0;
+    constexpr double density = 1500.0, sound = 150.0, angle = 25.0 * constants::kPi / 180.0;
     SolidScene s;
     s.gravity = {9.81 * std::sin(angle), 0.0, -9.81 * std::cos(angle)};
     s.density = density;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "base/constants.h"
 #include "catch.h"
 #include "checks/verify/body.h"
 #include "fake_gis.h"
@@ -20,7 +21,7 @@ constexpr double kRoundGravity = 10.0, kDensity = 1000.0;
 struct Turn {
     double degrees = 0.0;
     Vec3 at(const Vec3& x) const {
-        const double a = degrees * M_PI / 180.0;
+        const double a = degrees * constants::kPi / 180.0;
         return {std::cos(a) * x.x() - std::sin(a) * x.y(), std::sin(a) * x.x() + std::cos(a) * x.y(), x.z()};
     }
     Polygons at(Polygons outline) const {
@@ -39,7 +40,7 @@ SolidScene water(const Turn& turn, const Vec3& size, const Vec3& room, double ce
     s.density = kDensity;
     const double bulk = kDensity * 100.0 * kRoundGravity * size.z();
     s.law = solid::Fluid{bulk, 0.0};
-    const double a = turn.degrees * M_PI / 180.0;
+    const double a = turn.degrees * constants::kPi / 180.0;
     const verify::Frame3 frame{
         (Mat3() << std::cos(a), -std::sin(a), 0, std::sin(a), std::cos(a), 0, 0, 0, 1).finished()};
     s.grid = verify::grid_around(frame, {0, 0, 0}, room, cell);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "catch.h"
 #include "solid3d/bed_height.h"
 #include "solid_maker.h"
@@ -17,7 +18,7 @@ enum class Feature { ridge, pit, step, needle };
 /// Level ground with one feature a cell wide, whose flanks are that steep.
 Raster ground_with(Feature feature, double degrees) {
     Raster bed = Raster::filled({80, 49, -3.2, -2.2, kCell}, 0.0);
-    const double height = kCell * std::tan(degrees * M_PI / 180.0);
+    const double height = kCell * std::tan(degrees * constants::kPi / 180.0);
     for (Index j = 0; j < bed.geometry.ny; ++j)
         for (Index i = 0; i < bed.geometry.nx; ++i) {
             const bool here = i == 40, middle = j == 24;

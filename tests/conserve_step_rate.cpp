@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "analytic_scene.h"
+#include "base/constants.h"
 #include "catch.h"
 
 using namespace frana;
@@ -15,7 +16,7 @@ Scene gliding(double cfl, Transfer transfer) {
     Scene scene = scene_on(61, 41, 1.0, [](double, double) { return 0.0; });
     fill(scene, [](double x, double y) { return x > 8 && x < 32 && y > 8 && y < 32 ? 1.0 : 0.0; });
     for (std::size_t p = 0; p < scene.particles.x.size(); ++p) {
-        scene.particles.vx[p] = 1.0 + 0.01 * std::sin(0.5 * M_PI * scene.particles.y[p]);
+        scene.particles.vx[p] = 1.0 + 0.01 * std::sin(0.5 * constants::kPi * scene.particles.y[p]);
         scene.particles.vy[p] = 0.0;
     }
     scene.bed_law = bed::None{};
@@ -34,7 +35,7 @@ double wave_after(const Scene& scene, double end) {
     const Field &position = *frame.particle("position"), &velocity = *frame.particle("velocity");
     double sum = 0.0, squares = 0.0;
     for (Index p = 0; p < position.count; ++p) {
-        const double y = position.data[3 * p + 1], wave = std::sin(0.5 * M_PI * y);
+        const double y = position.data[3 * p + 1], wave = std::sin(0.5 * constants::kPi * y);
         if (std::abs(y - 20.0) > 6.0) continue;  // three waves
         sum += velocity.data[3 * p] * wave, squares += wave * wave;
     }

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "analytic_scene.h"
+#include "base/constants.h"
 #include "catch.h"
 #include "coupling/structured_run.h"
 #include "observe/budget.h"
@@ -169,7 +170,8 @@ TEST_CASE("Frames of structured columns have finite fields, of stress, damage an
 }
 
 TEST_CASE("Speeds of structured columns are along the bed smoothed to the curvature's length", "[structured]") {
-    Scene scene = scene_on(81, 31, 0.5, [](double x, double) { return 20.0 - x / 3.0 + 0.1 * std::cos(M_PI * x); });
+    Scene scene =
+        scene_on(81, 31, 0.5, [](double x, double) { return 20.0 - x / 3.0 + 0.1 * std::cos(constants::kPi * x); });
     scene.scheme.curvature_length = 1.5;  // 18 passes, each of which halves a wave of four cells
     scene.particles = {};
     fill(scene, [](double x, double y) { return x > 14 && x < 19 && y > 5 && y < 10 ? 0.8 : 0.0; });
@@ -179,7 +181,7 @@ TEST_CASE("Speeds of structured columns are along the bed smoothed to the curvat
     const std::unique_ptr<Simulation> run = make_simulation(scene);
     go_to(*run, 0.5);
     const Frame frame = run->frame();
-    const double left = 0.1 * M_PI * std::pow(0.5, 18);  // of the wave's slope
+    const double left = 0.1 * constants::kPi * std::pow(0.5, 18);  // of the wave's slope
     double fastest = 0.0;
     for (const auto* fields : {&frame.nodes, &frame.particles}) {
         const auto of = [&](const std::string& name) {

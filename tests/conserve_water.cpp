@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "base/constants.h"
 #include "catch.h"
 #include "checks/verify/exact_dam_break.h"
 #include "checks/verify/library.h"
@@ -435,7 +436,7 @@ TEST_CASE("Viscous water keeps volume and momentum over rough ground, at walls a
 
 TEST_CASE("A wave of stretching dies at twice the rate of one of shear, until its neighbours are dry",
           "[water][conserve]") {
-    const double nu = 0.05, cell = 0.25, dt = 0.01, k = M_PI / 10.0;
+    const double nu = 0.05, cell = 0.25, dt = 0.01, k = constants::kPi / 10.0;
     const double discrete = 2.0 * (1.0 - std::cos(k * cell)) / (cell * cell);
     for (const bool dry : {false, true}) {
         WaterScene s;
@@ -531,7 +532,8 @@ TEST_CASE("What smooth water loses is what friction and viscosity are recorded t
         const double length = 10.0;
         s.grid = verify::cells_over(cells, cells / 2, length / static_cast<double>(cells));
         s.start = [=](double x, double y) {
-            return WaterState{1.0 + 0.01 * std::cos(M_PI * x / length), 0.0, 0.05 * std::sin(M_PI * y / 5.0)};
+            return WaterState{1.0 + 0.01 * std::cos(constants::kPi * x / length), 0.0,
+                              0.05 * std::sin(constants::kPi * y / 5.0)};
         };
         s.friction = {WaterFriction::Law::darcy_weisbach, 2.0};
         s.viscosity.kinematic = 0.05;

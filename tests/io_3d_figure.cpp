@@ -7,6 +7,7 @@
 #include <ctime>
 #include <iostream>
 
+#include "base/constants.h"
 #include "catch.h"
 #include "fresh_folder.h"
 #include "io_3d_pictures.h"
@@ -373,7 +374,7 @@ TEST_CASE("Points and columns are drawn in the size that they have", "[space]") 
         CHECK(ball.pixel < 0.04);
         // In the section a column is as wide as it is, a point an octagon whose corners lie on the ball.
         const Width cut = width_of_first(drawn(render_section, figure), fast, 8.0);
-        CHECK(std::abs(cut.wide - (columns ? 1.5 : 1.5 * std::cos(M_PI / 8))) < 2.0 * cut.pixel);
+        CHECK(std::abs(cut.wide - (columns ? 1.5 : 1.5 * std::cos(constants::kPi / 8))) < 2.0 * cut.pixel);
         CHECK(cut.pixel < 0.04);
     }
 }

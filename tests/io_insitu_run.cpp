@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "base/atomic_file.h"
+#include "base/constants.h"
 #include "base/error.h"
 #include "catch.h"
 #include "fake_scene.h"
@@ -253,7 +254,8 @@ TEST_CASE("a map made in the run shows the flow where it is", "[insitu]") {
     };
     const Blot bar = blot("nothing", 0), first = blot("map", 0), last = blot("map", 4);
     const double flow = first.count - bar.count;
-    const double area = 2.0 * M_PI * 9.0 * std::log(FakeSimulation::height / 0.1);  // where it is deeper than 0.1 m
+    const double area =
+        2.0 * constants::kPi * 9.0 * std::log(FakeSimulation::height / 0.1);  // where it is deeper than 0.1 m
     const double pixels_per_metre = std::sqrt(flow / area);
     REQUIRE(pixels_per_metre > 5.0);
     const Vec2 moved = (last.sum - first.sum) / flow, expected = pixels_per_metre * Vec2(3.0, -1.0);  // in 2 s

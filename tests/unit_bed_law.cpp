@@ -1,4 +1,5 @@
 #include "analytic_scene.h"
+#include "base/constants.h"
 #include "catch.h"
 #include "law/bed/laws.h"
 #include "law/rheology/laws.h"
@@ -198,8 +199,9 @@ TEST_CASE("A Bingham sheet reaches its uniform speed and yields exactly", "[law]
 }
 
 TEST_CASE("A mu(I) sheet reaches Bagnold's mean speed", "[law]") {
-    const double slope = 26.0 * M_PI / 180.0;
-    const bed::Pouliquen law{std::tan(21.0 * M_PI / 180.0), std::tan(33.0 * M_PI / 180.0), 0.3, 1e-3, 0.6};
+    const double slope = 26.0 * constants::kPi / 180.0;
+    const bed::Pouliquen law{std::tan(21.0 * constants::kPi / 180.0), std::tan(33.0 * constants::kPi / 180.0), 0.3,
+                             1e-3, 0.6};
     BedState bed{9.81 * std::cos(slope), 0.02, 1.0, std::cos(slope), 9.81, 1500.0};
     double speed = 0.0;
     for (int step = 0; step < 20000; ++step)

@@ -9,8 +9,8 @@
 #include "checks/verify/placement.h"
 #include "observe/budget.h"
 #include "observe/memory_archive.h"
+#include "same_run.h"
 #include "shallow/depth_averaged.h"
-#include "state_bits.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -100,8 +100,8 @@ TEST_CASE("A bed without anything loose changes no bit of a run", "[erosion]") {
         slide([](Scene& s) { std::fill(s.erodible->depth.values.begin(), s.erodible->depth.values.end(), 0.0); }));
     run(rock, 6.0);
     run(bare, 6.0);
-    auto of_bare = bits(bare);
-    for (const auto& [name, entry] : bits(rock)) {
+    auto of_bare = state_bits(bare);
+    for (const auto& [name, entry] : state_bits(rock)) {
         INFO(name);
         if (name != "status/numbers") CHECK((of_bare.at(name) == entry));
     }
@@ -122,8 +122,8 @@ TEST_CASE("Loose ground beside a flow that does not reach it changes no bit of a
     REQUIRE(far.status().bed.eroded == 0.0);
     CHECK(far.status().kinetic == rock.status().kinetic);
     CHECK(far.status().potential == rock.status().potential);
-    auto of_far = bits(far);
-    for (const auto& [name, entry] : bits(rock)) {
+    auto of_far = state_bits(far);
+    for (const auto& [name, entry] : state_bits(rock)) {
         INFO(name);
         // "sums" have how far points may have gone since they were sorted. Those that want something may go farther.
         if (name != "status/numbers" && name != "sums") CHECK((of_far.at(name) == entry));

@@ -7,9 +7,9 @@
 #include "growing_slide.h"
 #include "observe/budget.h"
 #include "observe/memory_archive.h"
+#include "same_run.h"
 #include "scene/build_scene.h"
 #include "slope_case.h"
-#include "state_bits.h"
 
 using namespace frana;
 using namespace frana::test;

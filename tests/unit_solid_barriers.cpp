@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 
+#include "base/constants.h"
 #include "base/error.h"
 #include "catch.h"
 #include "checks/verify/box_mesh.h"
@@ -106,7 +107,7 @@ TEST_CASE("A corner that stands in is a corner of two planes, from before it and
 }
 
 TEST_CASE("In corners of a barrier of any width no image stands where material may be", "[solid]") {
-    const double wide = GENERATE(60.0, 70.0, 90.0, 110.0, 130.0) * M_PI / 180.0;
+    const double wide = GENERATE(60.0, 70.0, 90.0, 110.0, 130.0) * constants::kPi / 180.0;
     const Vec2 ray(std::cos(wide), std::sin(wide));
     // A solid around the wedge between +x and the ray, large against the reach.
     const std::vector<Surface> corner = {Surface::barrier(

@@ -1,4 +1,5 @@
 // 3D rigid surfaces: distances, mirror images, shares of an impulse.
+#include "base/constants.h"
 #include "catch.h"
 #include "law/solid_law.h"
 #include "solid3d/mirror_batch.h"
@@ -135,7 +136,7 @@ TEST_CASE("A box is near a surface when its nearest corner is", "[solid]") {
 }
 
 TEST_CASE("In corners of any width no image stands where material may be", "[solid]") {
-    const double wide = GENERATE(60.0, 70.0, 90.0, 110.0, 130.0, 150.0, 170.0) * M_PI / 180.0;
+    const double wide = GENERATE(60.0, 70.0, 90.0, 110.0, 130.0, 150.0, 170.0) * constants::kPi / 180.0;
     // A floor towards +x, and a plane that rises from the origin at the angle `wide` to it.
     const std::vector<Surface> corner = {Surface::plane({0, 0, 0}, {0, 0, 1}),
                                          Surface::plane({0, 0, 0}, {std::sin(wide), 0, -std::cos(wide)})};

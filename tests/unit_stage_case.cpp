@@ -1,4 +1,5 @@
 // [[stage]]: from the case file to the scene, and what is refused before the first step.
+#include "base/constants.h"
 #include "base/error.h"
 #include "catch.h"
 #include "scene/build_scene.h"
@@ -191,7 +192,7 @@ TEST_CASE("Cohesion without an angle of friction has no cone, and is refused by 
     CHECK(has(problem, "stage.1.friction_angle_deg: found 0 with stage.cohesion = 5000 Pa; expected an angle above 0"));
     CHECK(has(problem, "give an angle"));
     CHECK(std::get<solid::DruckerPrager>(scene_of(clay + "friction_angle_deg = 1\n").solid->law).tension ==
-          Approx(5000.0 / std::tan(M_PI / 180.0)));
+          Approx(5000.0 / std::tan(constants::kPi / 180.0)));
 }
 
 TEST_CASE("Sand keeps its velocities unless it is told not to, fluids do not", "[case]") {

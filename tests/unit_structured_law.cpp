@@ -6,6 +6,7 @@
 #include <random>
 #include <tuple>
 
+#include "base/constants.h"
 #include "catch.h"
 #include "checks/verify/strained_column.h"
 #include "law/structured_law.h"
@@ -15,7 +16,7 @@ using namespace frana::verify;
 
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+constexpr double kDegree = constants::kPi / 180.0;
 /// The return stops within 1e-7 of strength and weight (structured_law.cpp), which the cone's slope makes a few times more.
 constexpr double kReturned = 1e-6;
 
@@ -30,7 +31,7 @@ double q_of(const ColumnStress& s) {
 TEST_CASE("V1: a column that turns takes its stress along, in any number of steps", "[structured]") {
     const int steps = GENERATE(1, 50, 500, 5000);
     const ColumnLaw law(unbroken_clay(28.0));
-    const double angle = 2.0 * M_PI + 0.6;
+    const double angle = 2.0 * constants::kPi + 0.6;
     ColumnState state;
     state.stress = {3e3, -5e3, -2e3, 1e3};
     const ColumnStress s = strained(law, steps, {0, 0, 0, angle / steps}, -2e3, 1e9, state).stress;

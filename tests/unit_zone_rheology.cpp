@@ -1,17 +1,16 @@
 // Rheologies that differ in space: the same bits where all nodes have the same, what points of a zone feel, and what zones and
 // rasters of a case mean.
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "analytic_scene.h"
+#include "base/constants.h"
 #include "catch.h"
 #include "checks/verify/placement.h"
 #include "friction_in_space.h"
 #include "law/rheology/law_map.h"
 #include "observe/budget.h"
-#include "observe/memory_archive.h"
+#include "same_run.h"
 #include "scene/build_scene.h"
 #include "shallow/depth_averaged.h"
 #include "slope_case.h"
@@ -39,16 +38,6 @@ Scene slide(const Rheology& law, const std::function<void(Scene&)>& edit = {}) {
     return scene;
 }
 
-void check_same(DepthAveraged& a, DepthAveraged& b) {
-    const auto of_a = state_bits(a), of_b = state_bits(b);
-    REQUIRE(of_a.size() == of_b.size());
-    REQUIRE(of_a.size() > 20);
-    for (const auto& [name, entry] : of_a) {
-        INFO(name);
-        CHECK((of_b.at(name) == entry));
-    }
-}
-
 /// What frames show: stresses at the points.
 std::vector<double> stresses(DepthAveraged& run) {
     const Frame frame = run.frame();
@@ -68,7 +57,7 @@ TEST_CASE("Four rheologies side by side are each of them, to the last bit", "[zo
     const rheology::Bingham laws[] = {{10.0, 100.0}, {10.0, 0.0}, {0.0, 50.0}, {2000.0, 1e-3}};
     StrainState<Double4> four{
         {{0.3, -0.2, 0.1, 0.0}, {0.1, 0.4, -0.1, 0.0}, {0.4, 0.2, 0.0, 0.0}}, {4.0, 0.0, 2.0, 0.0}, 1e-3, 300.0};
-    const PlaneOf<Double4> together = rheology::side_by_side(laws[0], laws[1], laws[2], laws[3]).stress(four);
+    const PlaneOf<Double4> together = frana::laws::side_by_side(laws[0], laws[1], laws[2], laws[3]).stress(four);
     for (int n = 0; n < 4; ++n) {
         const StrainState<double> one{{four.rate.xx[n], four.rate.yy[n], four.rate.xy[n]}, four.shear[n], 1e-3, 300.0};
         const Plane alone = laws[n].stress(one);
@@ -112,33 +101,10 @@ TEST_CASE("Zones of a rheology have the same bits on any number of threads, and 
           "[zones][threads]") {
     Scene scene = slide(kRheologies[1]);
     scene.friction = stiff_beyond(scene, 60.0);
-    const int before = omp_get_max_threads();
-    omp_set_num_threads(1);
-    DepthAveraged alone(scene);
-    const Status first = alone.frame().status;
-    run_to(alone, 3.0);
-    MemoryArchive kept;
-    alone.serialize(kept);
-    run_to(alone, 6.0);
-    for (const int threads : {2, 4}) {
-        omp_set_num_threads(threads);
-        DepthAveraged several(scene);
-        run_to(several, 3.0), run_to(several, 6.0);
-        check_same(several, alone);
-    }
-    DepthAveraged resumed(scene, Start::resumed);
-    resumed.serialize(kept.rewind());
-    run_to(resumed, 6.0);
-    check_same(resumed, alone);
-    omp_set_num_threads(before);
-    const Budget left_over = budget(first, alone.frame().status);
-    CHECK(std::abs(left_over.mass_error) <= 1e-13);
-    double impulse = 0.0;
-    for (const double part : alone.status().impulse) impulse = std::max(impulse, std::abs(part));
-    for (const double residual : left_over.momentum_residual) CHECK(std::abs(residual) <= 1e-11 * impulse);
-    DepthAveraged everywhere(slide(kRheologies[1]));
-    run_to(everywhere, 6.0);
-    CHECK(everywhere.status().kinetic != alone.status().kinetic);
+    check_threads_and_resume(scene, 6.0);
+    DepthAveraged zones(scene), everywhere(slide(kRheologies[1]));
+    run_to(zones, 6.0), run_to(everywhere, 6.0);
+    CHECK(everywhere.status().kinetic != zones.status().kinetic);
 }
 
 // A layer that shears across its motion, v_x = r y: eps_xy = r / 2, and Bingham's I2 has the shear over its thickness besides.
@@ -175,7 +141,7 @@ TEST_CASE("A point has the stress of the node nearest to it", "[zones]") {
 // Friction of the bed, by (42) and (43): |V| = tau_B h / (6 mu) (2 + z)(1 - z)^2 with z the plug's share, tau_Y / tau_B. Nothing
 // flows across the slope, and so each zone has its own speed.
 TEST_CASE("A sheet of mud rests in the zone whose yield stress holds it, and flows uniformly in the other", "[zones]") {
-    const double slope = std::tan(10.0 * M_PI / 180), thickness = 0.8, border = 30.0;
+    const double slope = std::tan(10.0 * constants::kPi / 180.0), thickness = 0.8, border = 30.0;
     Scene scene = scene_on(121, 61, 1.0, [=](double x, double) { return -slope * x; });
     scene.density = 1800.0;
     scene.sides = Sides::wall;

@@ -1,18 +1,17 @@
 // Friction that differs in space: the same bits where all nodes have the same, and what zones and rasters of a case mean.
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "analytic_scene.h"
+#include "base/constants.h"
 #include "catch.h"
 #include "checks/verify/placement.h"
 #include "friction_in_space.h"
-#include "law/bed/laws_of_four.h"
+#include "law/bed/law_map.h"
 #include "observe/budget.h"
-#include "observe/memory_archive.h"
+#include "same_run.h"
 #include "scene/build_scene.h"
 #include "shallow/depth_averaged.h"
 #include "slope_case.h"
@@ -40,16 +39,6 @@ std::shared_ptr<const Friction> rough_beyond(const Scene& scene, double x0) {
     return by_place<bed::Voellmy>(scene, [x0](double x, double y) {
         return bed::Voellmy{x < x0 ? 0.15 + 1e-4 * y : 0.6, x < x0 ? 500.0 : 300.0};
     });
-}
-
-void check_same(DepthAveraged& a, DepthAveraged& b) {
-    const auto of_a = state_bits(a), of_b = state_bits(b);
-    REQUIRE(of_a.size() == of_b.size());
-    REQUIRE(of_a.size() > 20);
-    for (const auto& [name, entry] : of_a) {
-        INFO(name);
-        CHECK((of_b.at(name) == entry));
-    }
 }
 
 }  // namespace
@@ -106,30 +95,7 @@ TEST_CASE("A flow that takes up its bed feels the friction of the nodes below it
 TEST_CASE("Zones have the same bits on any number of threads, and when a run goes on", "[zones][threads]") {
     Scene scene = slide();
     scene.friction = rough_beyond(scene, 70.0);
-    const int before = omp_get_max_threads();
-    omp_set_num_threads(1);
-    DepthAveraged alone(scene);
-    const Status first = alone.frame().status;
-    run_to(alone, 3.0);
-    MemoryArchive kept;
-    alone.serialize(kept);
-    run_to(alone, 8.0);
-    for (const int threads : {2, 4}) {
-        omp_set_num_threads(threads);
-        DepthAveraged several(scene);
-        run_to(several, 3.0), run_to(several, 8.0);
-        check_same(several, alone);
-    }
-    DepthAveraged resumed(scene, Start::resumed);
-    resumed.serialize(kept.rewind());
-    run_to(resumed, 8.0);
-    check_same(resumed, alone);
-    omp_set_num_threads(before);
-    const Budget left_over = budget(first, alone.frame().status);
-    CHECK(std::abs(left_over.mass_error) <= 1e-13);
-    double impulse = 0.0;
-    for (const double part : alone.status().impulse) impulse = std::max(impulse, std::abs(part));
-    for (const double residual : left_over.momentum_residual) CHECK(std::abs(residual) <= 1e-11 * impulse);
+    check_threads_and_resume(scene, 8.0);
 }
 
 TEST_CASE("Zones on a terrain with x and y exchanged give the flow with x and y exchanged", "[zones]") {
@@ -165,7 +131,8 @@ TEST_CASE("Zones on a terrain with x and y exchanged give the flow with x and y 
 
 TEST_CASE("A layer holds where the friction of its zone holds it, asleep or not, and slides elsewhere", "[zones]") {
     for (const bool sleep : {true, false}) {
-        Scene scene = scene_on(90, 40, 2.0, [](double x, double) { return -std::tan(20 * M_PI / 180) * x; });
+        Scene scene =
+            scene_on(90, 40, 2.0, [](double x, double) { return -std::tan(20 * constants::kPi / 180.0) * x; });
         scene.scheme.sleep = sleep;
         fill(scene, [](double x, double y) { return x > 20 && x < 150 && y > 20 && y < 60 ? 1.0 : 0.0; });
         scene.friction =
@@ -188,9 +155,9 @@ TEST_CASE("A layer holds where the friction of its zone holds it, asleep or not,
 }
 
 TEST_CASE("Four nodes with numbers of their own leave what each leaves by itself, to the last bit", "[zones][law]") {
-    const auto check = [](const auto& laws) {
-        using Law = typename std::decay_t<decltype(laws)>::value_type;
-        const bed::LawsOfFour<Law> together({&laws[0], &laws[1], &laws[2], &laws[3]});
+    const auto check = [](const auto& of) {
+        using Law = typename std::decay_t<decltype(of)>::value_type;
+        const auto together = laws::side_by_side(of[0], of[1], of[2], of[3]);
         // From steps that friction hardly feels to such that stop, and to those beyond the series and the fraction.
         for (const double dt : {1e-4, 0.05, 0.7, 9.0})
             for (const double s0 : {0.0, 0.3, 14.0})
@@ -206,7 +173,7 @@ TEST_CASE("Four nodes with numbers of their own leave what each leaves by itself
                     for (int n = 0; n < 4; ++n) {
                         const BedState one{bed.normal_gravity[n], bed.thickness[n], bed.kappa[n],
                                            bed.cosine[n],         bed.gravity,      bed.density};
-                        CHECK(after[n] == laws[static_cast<std::size_t>(n)].speed_after(one, before[n], driven[n], dt));
+                        CHECK(after[n] == of[static_cast<std::size_t>(n)].speed_after(one, before[n], driven[n], dt));
                     }
                 }
     };

@@ -1,5 +1,6 @@
 // What must not move: lakes (to round-off) and piles below their friction angle (to the last bit).
 #include "analytic_scene.h"
+#include "base/constants.h"
 #include "catch.h"
 #include "fake_gis.h"
 #include "scene/build_scene.h"
@@ -85,7 +86,7 @@ TEST_CASE("A pile below its friction angle does not move by one bit", "[rest]") 
     };
     for (const Pile& pile : {Pile{0.2, 0.3, 0.6}, Pile{0.7, 0.2, 1.1}})
         for (const double turn : {0.0, 27.0, 45.0}) {
-            const double c = std::cos(turn * M_PI / 180), s = std::sin(turn * M_PI / 180);
+            const double c = std::cos(turn * constants::kPi / 180.0), s = std::sin(turn * constants::kPi / 180.0);
             Scene scene = scene_on(61, 61, 1.0, [&](double x, double y) { return 100 - pile.slope * (c * x + s * y); });
             scene.bed_law = bed::Coulomb{pile.mu};
             frana::test::fill(scene, [&](double x, double y) { return 4 - pile.surface * std::hypot(x - 30, y - 30); });
@@ -103,7 +104,7 @@ TEST_CASE("A pile below its friction angle does not move by one bit", "[rest]") 
 }
 
 TEST_CASE("A slab holds at tan(th) = mu and slides just below it", "[rest]") {
-    const double slope = std::tan(M_PI / 6);
+    const double slope = std::tan(constants::kPi / 6);
     for (const double factor : {1.0 + 1e-9, 1.0 - 1e-4}) {
         Scene scene = scene_on(41, 41, 2.0, [&](double x, double) { return 100 - slope * x; });
         scene.bed_law = bed::Coulomb{slope * factor};

@@ -19,10 +19,10 @@ constexpr double kSmall = 1e-3;       ///< height of the wave over the depth
 /// A uniform flow down a plane of 20 degrees, 1 m deep along the vertical, mu = 0.155.
 struct Sheet {
     double xi;  ///< [m/s^2]
-    double angle = 20.0 * M_PI / 180.0, mu = 0.155, cosine = std::cos(angle), depth = cosine;
+    double angle = 20.0 * constants::kPi / 180.0, mu = 0.155, cosine = std::cos(angle), depth = cosine;
     double speed() const { return std::sqrt(xi * depth * (std::sin(angle) - mu * cosine)); }
     double froude() const { return speed() / std::sqrt(kGravity * cosine * depth); }
-    double wavenumber() const { return 2.0 * M_PI * cosine / kWavelength; }
+    double wavenumber() const { return 2.0 * constants::kPi * cosine / kWavelength; }
 
     /// Rate of the wave that grows fastest [1/s]. With the flow, along the slope: s h' + i k h u' = 0 and
     /// s u' = -i k g cos h' - 2 n u' + n u / h h', n = g u / (xi h). So s^2 + 2 n s + k^2 g cos h + i k n u = 0.
@@ -40,7 +40,7 @@ double height(const Frame& frame, double from) {
     const double* depth = frame.node("depth")->data + frame.grid.ny / 2 * frame.grid.nx;
     std::complex<double> sum = 0.0;
     for (Index i = first; i < first + cells; ++i)
-        sum += (depth[i] - 1.0) * std::polar(1.0, 2.0 * M_PI * frame.grid.x(i) / kWavelength);
+        sum += (depth[i] - 1.0) * std::polar(1.0, 2.0 * constants::kPi * frame.grid.x(i) / kWavelength);
     return 2.0 * std::abs(sum) / static_cast<double>(cells);
 }
 
@@ -51,7 +51,7 @@ double measured_rate(const Sheet& sheet, double cell) {
     scene.density = 300.0;
     scene.bed_law = bed::Voellmy{sheet.mu, sheet.xi};
     scene.sides = Sides::wall;
-    const auto phase = [](double x) { return 2.0 * M_PI * x / kWavelength; };
+    const auto phase = [](double x) { return 2.0 * constants::kPi * x / kWavelength; };
     verify::fill(scene,
                  [&](double x, double) { return x > 40.0 && x < 160.0 ? 1.0 + kSmall * std::sin(phase(x)) : 0.0; });
     const std::complex<double> s = sheet.rate() / sheet.wavenumber();
@@ -68,7 +68,7 @@ double measured_rate(const Sheet& sheet, double cell) {
     return std::log(height_at(2.0) / early) / 1.5;
 }
 
-double order_two(double cell) { return std::pow(2.0 * M_PI * cell / kWavelength, 2); }
+double order_two(double cell) { return std::pow(2.0 * constants::kPi * cell / kWavelength, 2); }
 
 }  // namespace
 

@@ -34,7 +34,7 @@ double wave_in(const Frame& frame, double from, double to) {
 // where that is less than u + sqrt(g h). So what is there at the start bounds what is there later.
 // In the time that the sheet takes for 20 m they come from its rear at 10 m to 70 m.
 TEST_CASE("A viscous sheet on a slope grows no wave of two cells", "[verify][sheet_waves]") {
-    const double fall = std::tan(20.0 * M_PI / 180.0), cosine = std::cos(std::atan(fall)), nu = 1e-2;
+    const double fall = std::tan(20.0 * constants::kPi / 180.0), cosine = std::cos(std::atan(fall)), nu = 1e-2;
     Scene scene = scene_on(801, 5, kCell, [&](double x, double) { return -fall * x; });
     scene.bed_law = bed::Bingham{nu * scene.density, 0.0, 0.0};
     scene.rheology = rheology::Newtonian{nu * scene.density};
@@ -73,7 +73,7 @@ TEST_CASE("A sheet that slides on levels its waves of two cells, one that lies k
     scene.bed_law = speed > 0.0 ? BedLaw{bed::None{}} : BedLaw{bed::Coulomb{0.4}};
     scene.sides = Sides::wall;
     verify::fill(scene, [&](double x, double) {
-        return x > 5.0 && x < 40.0 ? kDepth * (1.0 + 0.1 * std::cos(M_PI * x / kCell)) : 0.0;
+        return x > 5.0 && x < 40.0 ? kDepth * (1.0 + 0.1 * std::cos(constants::kPi * x / kCell)) : 0.0;
     });
     for (double& v : scene.particles.vx) v = speed;
     Trial trial(std::move(scene), Setup{});

@@ -42,7 +42,7 @@ StructuredScene heap(const GridGeometry& grid, double length, const std::functio
     StructuredScene s;
     s.grid = grid;
     s.material.young = 1e6;  // nothing is whole: it only sets the step, which grains need short
-    s.material.friction = 30.0 * M_PI / 180.0;
+    s.material.friction = 30.0 * constants::kPi / 180.0;
     const double side = 4.0 * grid.cell, spacing = 0.5 * grid.cell;
     verify::add_channel(s, 0.0, side);
     const int columns = static_cast<int>(std::lround(2.0 * length / spacing));
@@ -85,7 +85,7 @@ double spread_error(const SavageHutterHeap& pile, bool hydrostatic, int cells) {
 
 TEST_CASE("V16: a heap of grains spreads by Ka on its way down a plane as Savage and Hutter have it",
           "[structured][grains]") {
-    const SavageHutterHeap pile{10.0, 1.0, 35.0 * M_PI / 180.0, std::tan(20.0 * M_PI / 180.0)};
+    const SavageHutterHeap pile{10.0, 1.0, 35.0 * constants::kPi / 180.0, std::tan(20.0 * constants::kPi / 180.0)};
     const bool hydrostatic = GENERATE(false, true);
     const double coarse = spread_error(pile, hydrostatic, 20), fine = spread_error(pile, hydrostatic, 40);
     const double apart = std::abs(pile.stretch(1.0, 3.0) / pile.stretch(1.0 / 3.0, 3.0) - 1.0);
@@ -125,7 +125,7 @@ TEST_CASE("V16: a vertical face lower than Bell's height does not push, a higher
     StructuredScene s;
     s.grid = verify::grid_over({0, 0}, {4, kWidth}, 0.125);  // binary: what columns weigh has no round-off
     s.material.young = 1e6;
-    s.material.friction = 30.0 * M_PI / 180.0;
+    s.material.friction = 30.0 * constants::kPi / 180.0;
     s.material.critical_strain = 1e9;  // it yields, but keeps its cohesion
     verify::add_channel(s, 0.0, kWidth);
     Obstacle face, end;
@@ -157,7 +157,7 @@ TEST_CASE(
     // A bar 12 m long is drawn out by a fifth. Its free ends send waves inwards, 2.5 m/s for a second; between them columns
     // go with the strain, and a tensile instability would grow at about sqrt(strain) c / spacing, 16 / s: a millionfold.
     constexpr double kRate = 0.2, kEnd = 1.0, kSpacing = 0.05;
-    const double angle = GENERATE(0.0, 30.0, 45.0) * M_PI / 180.0;
+    const double angle = GENERATE(0.0, 30.0, 45.0) * constants::kPi / 180.0;
     const Vec2 along(std::cos(angle), std::sin(angle)), side(-along.y(), along.x());
     StructuredScene s;
     s.grid = verify::grid_over({-8, -8}, {8, 8}, 2.0 * kSpacing);

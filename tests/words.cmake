@@ -110,5 +110,6 @@ instead(SAY "2D to 3D, or 3D to 2D conversion" CODE TEXTS "hand_over" "handed" "
 instead(SAY "Mpm3d, or a name with 3d" CODE TEXTS "SolidFlow" "[a-z]?Space[A-Z]" "kSpace" "in_space")
 instead(SAY "Array" CODE TEXTS "(^|[^a-zA-Z_])(Column|ColumnOf)($|[^a-zA-Z_])"
         ROOMS src/base/ src/mpm/ src/shallow/ src/solid3d/ src/structured/)
+instead(SAY "constants::kPi" CODE TEXTS "M_PI")
 list(LENGTH sources count)
 message(STATUS "${lists} lists of words hold in ${count} files")

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <system_error>
 
@@ -33,5 +34,8 @@ inline std::optional<double> number_in(std::string_view text) {
     if (!number || number->length != text.size()) return std::nullopt;
     return number->value;
 }
+
+/// A unit as it follows a number: " kPa"; nothing after a pure number, whose unit is "1" or none.
+inline std::string after_number(const std::string& unit) { return unit.empty() || unit == "1" ? "" : " " + unit; }
 
 }  // namespace frana

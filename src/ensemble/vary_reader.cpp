@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/number_text.h"
 #include "scene/parameter_priors.h"
 #include "scene/parameters.h"
 
@@ -79,17 +80,13 @@ private:
         using Shape = ParameterPrior::Shape;
         Distribution& of = vary.distribution;
         of.low = prior->a, of.high = prior->b;
-        std::string words = fmt::format("uniform, {:.4g} to {:.4g}", prior->a, prior->b);
-        if (prior->shape == Shape::triangular) {
+        if (prior->shape == Shape::triangular)
             of.kind = Kind::triangular, of.middle = prior->b, of.high = prior->c;
-            words = fmt::format("triangular, {:g} to {:g}, most likely {:g}", prior->a, prior->c, prior->b);
-        } else if (prior->shape == Shape::lognormal) {
+        else if (prior->shape == Shape::lognormal)
             of.kind = Kind::lognormal, of.middle = prior->a, of.spread = prior->b, of.low = 0.0, of.high = kInfinite;
-            words = fmt::format("lognormal, median {:g}, factor {:g}", prior->a, prior->b);
-        }
         vary.prior =
             fmt::format("{}: without a range it has the prior of case.kind = \"{}\": {}; see cases/PARAMETERS.md",
-                        vary.key, kind_, words);
+                        vary.key, kind_, words_of(*prior, after_number(find_parameter(vary.key)->unit)));
         return true;
     }
 

@@ -32,10 +32,7 @@ struct FreeWater {
     NodeValues<double> coefficients;  ///< of that law
     WaterViscosity viscosity;
 
-    WaterFriction friction_at(Index k) const {
-        if (friction == WaterFriction::Law::none) return {};
-        return {friction, coefficients[k]};
-    }
+    WaterFriction friction_at(Index k) const { return {friction, coefficients[k]}; }
 
     /// THEORY (17): share of its weight that water takes off a column's bed, 1 at most: what floats does not pull.
     double support(double bound_density, double bound_depth, double depth) const {

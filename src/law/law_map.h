@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "law/key.h"
+#include "law/side_by_side.h"
 
 namespace frana::laws {
 

@@ -48,15 +48,20 @@ private:
     bool loading_ = false;
 };
 
-/// All that a simulation keeps, but for its clock.
-template <class Simulation>
-std::map<std::string, MemoryArchive::Entry> state_bits(Simulation& run) {
-    MemoryArchive archive;
-    run.serialize(archive);
+/// All that a kept state holds, but for the clock's wall time.
+inline std::map<std::string, MemoryArchive::Entry> without_clock(const MemoryArchive& archive) {
     std::map<std::string, MemoryArchive::Entry> entries;
     for (const auto& [name, entry] : archive.entries())
         if (name.find("clock/") == std::string::npos) entries.emplace(name, entry);
     return entries;
+}
+
+/// All that a simulation keeps, likewise.
+template <class Simulation>
+std::map<std::string, MemoryArchive::Entry> state_bits(Simulation& run) {
+    MemoryArchive archive;
+    run.serialize(archive);
+    return without_clock(archive);
 }
 
 }  // namespace frana

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/number_text.h"
 #include "scene/mud_table.h"
 #include "scene/parameter_priors.h"
 #include "scene/parameter_ranges.h"
@@ -16,7 +17,7 @@ namespace {
 std::string unit_of(const std::string& key) {
     const Parameter* parameter = find_parameter(key);
     expect(parameter != nullptr, key.c_str());
-    return parameter->unit == "1" ? "" : " " + parameter->unit;
+    return after_number(parameter->unit);
 }
 
 std::string source_of(const ParameterRange& row) { return *row.source ? row.source : "a common range"; }
@@ -100,12 +101,6 @@ std::string mud_table() {
     return text;
 }
 
-std::string prior_text(const ParameterPrior& row) {
-    if (row.shape == ParameterPrior::Shape::lognormal)
-        return fmt::format("lognormal, median {:g}{}, factor {:g}", row.a, unit_of(row.key), row.b);
-    return fmt::format("triangular, {:g} to {:g}, most likely {:g}", row.a, row.c, row.b);
-}
-
 std::string priors_table() {
     std::string text =
         "\n## Priors of ensembles\n\nWhere `[[ensemble.vary]]` gives a key and no range, and the case its "
@@ -113,7 +108,7 @@ std::string priors_table() {
         "No source was read for them: they are wide, and a place to begin.\n\n| `case.kind` | Key | Bed law | "
         "Prior |\n|---|---|---|---|\n";
     for (const ParameterPrior& row : parameter_priors())
-        text += fmt::format("| `{}` | `{}` | {} | {} |\n", row.kind, row.key, row.law, prior_text(row));
+        text += fmt::format("| `{}` | `{}` | {} | {} |\n", row.kind, row.key, row.law, words_of(row, unit_of(row.key)));
     return text;
 }
 

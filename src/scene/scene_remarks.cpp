@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/constants.h"
+#include "base/number_text.h"
 #include "scene/parameter_ranges.h"
 #include "scene/remarks.h"
 #include "scene/scene_parts.h"
@@ -78,7 +79,7 @@ void remark_on_kind(const CaseFile& file, const std::string& key, const std::str
     if (value >= low * (1.0 - round_off) && value <= high * (1.0 + round_off)) return;
     const std::string& unit = find_parameter(meaning)->unit;
     remark_on(scene.log, Remark::kind_range, file.place(key),
-              {value, 0.0, fmt::format("{:.4g} to {:.4g}{} for {}", low, high, unit == "1" ? "" : " " + unit, kind)});
+              {value, 0.0, fmt::format("{:.4g} to {:.4g}{} for {}", low, high, after_number(unit), kind)});
 }
 
 /// Of all zones as well; rasters are not looked at.

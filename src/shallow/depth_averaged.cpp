@@ -18,7 +18,7 @@ namespace {
 constexpr double kOrdinaryCfl = 0.5;
 /// A bed loses where points have arrived, half a step's way too late. 3D points take over what arrives in a step at
 /// once. Both err twice as much with steps twice as long, where the flow itself hardly errs more.
-constexpr double kMostNextToOthers = 0.5;
+constexpr double kMostCflOfExchange = 0.5;
 constexpr double kStepsBetweenSplits = 3.0;  ///< ordinary ones
 /// Cells a point may have moved since the last sort: same-colour tiles then still share no node, as long as the drift d
 /// keeps 16 + d + 2 < 32 - d - 1 (sub-points reach from one node before the quadratic stencil to one behind it), d <= 6;
@@ -53,7 +53,7 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
       curved_(steep_ && scene.curvature == Curvature::full),
       sleeps_(scene.scheme.sleep),
       footprint_depth_(scene.output.footprint_depth) {
-    if (scene.erodible || scene.solid) flow_.scheme.cfl = std::min(flow_.scheme.cfl, kMostNextToOthers);
+    if (scene.erodible || scene.solid) flow_.scheme.cfl = std::min(flow_.scheme.cfl, kMostCflOfExchange);
     expect(!scene.wider, "on a part of a terrain columns grow it (coupling/growing_columns.h)");
     expect(flow_.grid.nx() >= 4 && flow_.grid.ny() >= 4, "the grid needs four nodes in each direction");
     flush_denormals_on_all_threads();

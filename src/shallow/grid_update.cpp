@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "law/bed/laws_of_four.h"
 #include "law/bed/node_friction.h"
 #include "shallow/grid_update_bed.h"
 #include "shallow/lateral.h"
@@ -96,8 +95,7 @@ template <class Real, class Law>
         const auto& of = *std::get_if<std::vector<typename Law::One>>(&laws->laws);
         const auto& place = laws->place;
         if constexpr (std::is_same_v<Real, Double4>)
-            return bed::LawsOfFour<typename Law::One>(
-                {&of[place[k]], &of[place[k + 1]], &of[place[k + 2]], &of[place[k + 3]]});
+            return frana::laws::side_by_side(of[place[k]], of[place[k + 1]], of[place[k + 2]], of[place[k + 3]]);
         else
             return (of[place[k]]);
     } else {
@@ -447,7 +445,7 @@ std::unique_ptr<GridUpdateKernel> with_law(const Scene& scene) {
         return std::visit(
             [&](const auto& table) -> std::unique_ptr<GridUpdateKernel> {
                 using One = typename std::decay_t<decltype(table)>::value_type;
-                using Law = std::conditional_t<bed::kSideBySide<One>, TableOf<One>, LawOfEachNode>;
+                using Law = std::conditional_t<laws::kSideBySide<One>, TableOf<One>, LawOfEachNode>;
                 return std::make_unique<Kernel<Law, Terrain>>(Law{}, on_points);
             },
             laws->laws);

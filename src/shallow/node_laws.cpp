@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "law/bed/laws_of_four.h"
 #include "law/bed/node_friction.h"
 #include "mpm/on_storage.h"
 
@@ -13,8 +12,8 @@ namespace {
 template <class Law>
 Double4 each_by_its_own(const std::vector<Law>& laws, const std::array<std::uint32_t, 4>& place,
                         const BedStateOf<Double4>& bed, const Double4& s0, const Double4& driven, double dt) {
-    if constexpr (bed::kSideBySide<Law>) {
-        const bed::LawsOfFour<Law> here({&laws[place[0]], &laws[place[1]], &laws[place[2]], &laws[place[3]]});
+    if constexpr (frana::laws::kSideBySide<Law>) {
+        const auto here = frana::laws::side_by_side(laws[place[0]], laws[place[1]], laws[place[2]], laws[place[3]]);
         return here.speed_after(bed, s0, driven, dt);
     } else {
         Double4 speed = {};

@@ -50,7 +50,7 @@ struct ThatOfNode {
                                                    const StrainState<Double4>& state) const {
         const Int4 i = floor_positive(x + (kTile + 0.5)), j = floor_positive(y + (kTile + 0.5));
         const auto law = [&](int n) -> const Law& { return laws[of.place[j[n] * of.stride + i[n]]]; };
-        return rheology::side_by_side(law(0), law(1), law(2), law(3)).stress(state);
+        return frana::laws::side_by_side(law(0), law(1), law(2), law(3)).stress(state);
     }
 };
 

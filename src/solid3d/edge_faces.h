@@ -11,9 +11,7 @@ struct MetFaces {
     int faced, all;
 };
 
-/// Normals nearer to each other than this, 30 degrees, are one face that bends: its mirror particles would count twice.
-constexpr double kSameFace = 0.866;
-
+/// Mirror particles of one face that bends would count twice.
 inline bool bends_from(const Contact* list, int count, const Vec3& normal) {
     for (int n = 0; n < count; ++n)
         if (list[n].normal.dot(normal) > kSameFace) return false;

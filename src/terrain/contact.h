@@ -28,6 +28,9 @@ inline double mirror_reach(const Vec3& normal) { return 3.0 * normal.lpNorm<1>()
 /// Of any normal.
 constexpr double kLongestReach = 5.2;
 
+/// Normals nearer to each other than this, the cosine of 30 degrees, are one face that bends.
+constexpr double kSameFace = 0.866;
+
 /// Surfaces whose normals are more than 120 degrees apart have no common corner: they are two sides.
 constexpr double kOpposite = -0.5;
 

@@ -7,10 +7,11 @@
 #include <map>
 #include <numeric>
 
+#include "terrain/contact.h"
+
 namespace frana {
 namespace {
 
-constexpr double kSharp = 0.866;        // cosine of 30 degrees: faces that turn less are one that bends
 constexpr double kFlat = 0.9998;        // of a degree: triangles that turn less lie in one plane
 constexpr double kBlocksOfReach = 0.5;  // a block's edge over the reach
 
@@ -47,7 +48,7 @@ struct Touching {
         return at(side.first);
     }
     bool sharp(const std::vector<std::size_t>& two) const {
-        return two.size() == 2 && normal[two[0]].dot(normal[two[1]]) < kSharp;
+        return two.size() == 2 && normal[two[0]].dot(normal[two[1]]) < kSameFace;
     }
     /// Above zero where the edge stands in: the other triangle rises over the plane of the first.
     double rise(const Side& side, const std::vector<std::size_t>& two) const {

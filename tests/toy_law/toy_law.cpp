@@ -1,6 +1,7 @@
 // A bed law that was added as src/README.md says: a case names it, and the depth-averaged solver runs by it.
 #include <cmath>
 
+#include "base/constants.h"
 #include "base/error.h"
 #include "catch.h"
 #include "scene/scene_parts.h"
@@ -10,7 +11,7 @@ using namespace frana;
 
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+constexpr double kDegree = constants::kPi / 180.0;
 
 CaseFile case_with(const std::string& keys) {
     return CaseFile::parse(
@@ -70,9 +71,9 @@ TEST_CASE("An added bed law has its parameters from the case, or their defaults"
     Scene scene;
     set_physics(case_with("law = \"viscous\"\nfriction_angle_deg = 45\n"), scene);
     REQUIRE(std::holds_alternative<bed::Viscous>(scene.bed_law));
-    CHECK(std::get<bed::Viscous>(scene.bed_law).mu == std::tan(45.0 * M_PI / 180.0));
+    CHECK(std::get<bed::Viscous>(scene.bed_law).mu == std::tan(45.0 * constants::kPi / 180.0));
     CHECK(std::get<bed::Viscous>(scene.bed_law).rate == 0.5);
-    CHECK(friction_at_rest(scene.bed_law) == std::tan(45.0 * M_PI / 180.0));
+    CHECK(friction_at_rest(scene.bed_law) == std::tan(45.0 * constants::kPi / 180.0));
 }
 
 TEST_CASE("A block on a plane follows an added bed law's closed form", "[toy_law]") {

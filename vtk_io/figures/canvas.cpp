@@ -11,6 +11,7 @@
 #include <memory>
 #include <utility>
 
+#include "base/constants.h"
 #include "base/error.h"
 #include "vtk_io/figures/canvas_font.h"
 
@@ -188,7 +189,7 @@ public:
         cairo_t* cairo = cairo_.get();
         cairo_save(cairo);
         cairo_translate(cairo, text.at.x(), height_ - text.at.y());
-        cairo_rotate(cairo, -text.style.angle * M_PI / 180.0);
+        cairo_rotate(cairo, -text.style.angle * constants::kPi / 180.0);
         double x = shift_x[static_cast<int>(text.style.across)], y = -shift_y[static_cast<int>(text.style.upward)];
         if (text.style.angle == 0.0) x = std::round(x), y = std::round(y);
         if (text.style.boxed) {

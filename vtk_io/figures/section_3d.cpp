@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "vtk_io/figures/colours_3d.h"
 #include "vtk_io/figures/figure_3d.h"
 #include "vtk_io/figures/map_figure_furniture.h"
@@ -235,7 +236,7 @@ private:
             const double radius = std::max(0.5 * piece->size * scale_, 0.8);
             std::vector<Vec2> disc;
             for (int k = 0; k < kCorners; ++k) {
-                const double turn = 2.0 * M_PI * (k + 0.5) / kCorners;
+                const double turn = 2.0 * constants::kPi * (k + 0.5) / kCorners;
                 disc.emplace_back(centre + radius * Vec2(std::cos(turn), std::sin(turn)));
             }
             canvas.fill(disc, colour);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/constants.h"
 #include "base/error.h"
 
 namespace frana::bench {
@@ -20,7 +21,7 @@ SolidLaw law_of(BodyLaw law) {
         case BodyLaw::drucker_prager: {
             constexpr double kPoisson = 0.3;  // of the modulus that gives that sound, lambda + 2 G, Young's has a share
             const double young = bulk * (1.0 + kPoisson) * (1.0 - 2.0 * kPoisson) / (1.0 - kPoisson);
-            return solid::DruckerPrager::of(solid::Elastic::of(young, kPoisson), 30.0 * M_PI / 180.0, 0.0);
+            return solid::DruckerPrager::of(solid::Elastic::of(young, kPoisson), 30.0 * constants::kPi / 180.0, 0.0);
         }
     }
     throw InternalError("unknown law");

@@ -4,10 +4,12 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace frana::verify {
 
 Frame3 turned_about_y(double degrees) {
-    const double a = degrees * M_PI / 180.0;
+    const double a = degrees * constants::kPi / 180.0;
     return {(Mat3() << std::cos(a), 0, std::sin(a), 0, 1, 0, -std::sin(a), 0, std::cos(a)).finished()};
 }
 

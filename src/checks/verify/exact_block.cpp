@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace frana::verify {
 
 double Slab::drive() const {
-    const double th = slope_deg * M_PI / 180;
+    const double th = slope_deg * constants::kPi / 180.0;
     return std::max(0.0, gravity * (std::sin(th) - mu * std::cos(th)));
 }
 

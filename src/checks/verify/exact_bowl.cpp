@@ -78,8 +78,8 @@ Bowl planar_bowl() {
     constexpr double a = 1.0, h0 = 0.1, eta = 0.5;  // radius, depth, distance of the water's centre from the middle [m]
     const double omega = std::sqrt(2 * kGravity * h0) / a;
     Bowl bowl;
-    bowl.period = 2 * M_PI / omega;
-    bowl.volume = 0.5 * M_PI * h0 * a * a;
+    bowl.period = 2 * constants::kPi / omega;
+    bowl.volume = 0.5 * constants::kPi * h0 * a * a;
     bowl.swing = 2 * bowl.volume * kGravity * h0 * eta * eta / (a * a);  // as much lift as motion
     bowl.bed = [](double x, double y) {
         return -h0 * (1 - (square(x - kBowlMiddle) + square(y - kBowlMiddle)) / (a * a));
@@ -105,12 +105,12 @@ Bowl radial_bowl() {
     const double omega = std::sqrt(8 * kGravity * h0) / a;
     /// Energy over density of the paraboloid D - k r^2 in the bowl.
     const auto energy = [](double D, double k) {
-        return kGravity * M_PI / k * (D * D * D / 6 * (1 + steepness / k) - 0.5 * h0 * D * D);
+        return kGravity * constants::kPi / k * (D * D * D / 6 * (1 + steepness / k) - 0.5 * h0 * D * D);
     };
     Bowl bowl;
     bowl.round = true;
-    bowl.period = 2 * M_PI / omega;
-    bowl.volume = 0.5 * M_PI * h0 * a * a;
+    bowl.period = 2 * constants::kPi / omega;
+    bowl.volume = 0.5 * constants::kPi * h0 * a * a;
     bowl.swing = energy(h0 * std::sqrt((1 + A) / (1 - A)), steepness * (1 + A) / (1 - A)) - energy(h0, steepness);
     bowl.bed = [](double x, double y) { return -h0 + steepness * (square(x - kBowlMiddle) + square(y - kBowlMiddle)); };
     bowl.rest = [](double x, double y) { return h0 - steepness * (square(x - kBowlMiddle) + square(y - kBowlMiddle)); };
@@ -135,7 +135,7 @@ Bowl parabolic_trough() {
     const double omega = std::sqrt(2 * kGravity * h0) / a;
     Bowl bowl;
     bowl.width = 1.0;
-    bowl.period = 2 * M_PI / omega;
+    bowl.period = 2 * constants::kPi / omega;
     bowl.volume = 4.0 / 3.0 * h0 * a * bowl.width;
     bowl.swing = bowl.volume * kGravity * h0 * reach * reach / (a * a);
     bowl.bed = [](double x, double) { return h0 * (square((x - kBowlMiddle) / a) - 1); };

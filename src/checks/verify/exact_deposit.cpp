@@ -50,7 +50,7 @@ std::vector<Residual> FlatDeposit::residuals() const {
 }
 
 double RoundDeposit::front() const {
-    return std::pow(225 * volume * volume / (128 * M_PI * M_PI * material.length()), 0.2);
+    return std::pow(225 * volume * volume / (128 * constants::kPi * constants::kPi * material.length()), 0.2);
 }
 
 double RoundDeposit::depth(double r) const {
@@ -61,9 +61,10 @@ double RoundDeposit::contour(double level) const { return front() - level * leve
 
 std::vector<Residual> RoundDeposit::residuals() const {
     const RoundDeposit known{{1000.0, 50.0}, 1.0};
-    return {{"volume / given - 1", volume_of(*this, [](double r) { return 2 * M_PI * r; }) / volume - 1, 1e-6},
-            {"rho g h h' / tau_Y - 1", balance(*this, 0.4 * front()), 1e-9},
-            {"published: front 2.035515 m", known.front() - 2.035515, 5e-7}};
+    return {
+        {"volume / given - 1", volume_of(*this, [](double r) { return 2 * constants::kPi * r; }) / volume - 1, 1e-6},
+        {"rho g h h' / tau_Y - 1", balance(*this, 0.4 * front()), 1e-9},
+        {"published: front 2.035515 m", known.front() - 2.035515, 5e-7}};
 }
 
 InclineDeposit::InclineDeposit(const YieldMaterial& material, double slope, double volume)

@@ -60,9 +60,10 @@ std::vector<Residual> SimilarityPile::residuals() {
     for (double y = -99.875; y < 100; y += cell)
         for (double x = -99.875; x < 140; x += cell) volume += cell * cell * pile.at(now, x, y).depth;
     std::vector<Residual> list = published();
-    list.insert(list.end(), {{"equation of g'' by differences", along, 1e-4},  // step^2 / 12 of the fourth derivative
-                             {"equation of f'' by differences", across, 1e-4},
-                             {"volume at 5 s / (pi / 2 H L^2) - 1", volume / (0.5 * M_PI * 4 * 80 * 80) - 1, 1e-5}});
+    list.insert(list.end(),
+                {{"equation of g'' by differences", along, 1e-4},  // step^2 / 12 of the fourth derivative
+                 {"equation of f'' by differences", across, 1e-4},
+                 {"volume at 5 s / (pi / 2 H L^2) - 1", volume / (0.5 * constants::kPi * 4 * 80 * 80) - 1, 1e-5}});
     return list;
 }
 

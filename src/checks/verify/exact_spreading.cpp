@@ -64,12 +64,12 @@ std::vector<Residual> PlanarSpreading::residuals() const {
 }
 
 double RoundSpreading::front(double t) const {
-    static const double xi = std::pow(1024 / (81 * M_PI * M_PI * M_PI), 0.125);
+    static const double xi = std::pow(1024 / (81 * constants::kPi * constants::kPi * constants::kPi), 0.125);
     return xi * std::pow(g * volume * volume * volume * t / (3 * nu), 0.125);
 }
 
 double RoundSpreading::depth(double r, double t) const {
-    return 4 * volume / (3 * M_PI * front(t) * front(t)) * at_share(r / front(t));
+    return 4 * volume / (3 * constants::kPi * front(t) * front(t)) * at_share(r / front(t));
 }
 
 double RoundSpreading::contour(double level, double t) const {

@@ -69,11 +69,11 @@ std::shared_ptr<const Track> parabola(double steepest, double length) {
 }
 
 std::shared_ptr<const Track> hockey_stick(double slope_deg, double radius) {
-    return std::make_shared<Arc>(radius, radius * std::sin(slope_deg * M_PI / 180), 0.0);
+    return std::make_shared<Arc>(radius, radius * std::sin(slope_deg * constants::kPi / 180.0), 0.0);
 }
 
 std::shared_ptr<const Track> circle(double radius) {
-    const double reach = radius * std::sin(60 * M_PI / 180);
+    const double reach = radius * std::sin(60 * constants::kPi / 180.0);
     return std::make_shared<Arc>(radius, reach, reach);
 }
 
@@ -123,11 +123,11 @@ std::vector<Residual> track_residuals(const Track& track, double mu, double star
 }
 
 std::vector<Residual> pendulum_residuals(double radius, double release_deg) {
-    const double angle = release_deg * M_PI / 180, start = -radius * std::sin(angle);
+    const double angle = release_deg * constants::kPi / 180.0, start = -radius * std::sin(angle);
     const auto track = circle(radius);
     double a = 1.0, b = std::cos(0.5 * angle);
     for (int k = 0; k < 20; ++k) std::tie(a, b) = std::pair{0.5 * (a + b), std::sqrt(a * b)};
-    const double period = 2 * M_PI * std::sqrt(radius / kGravity) / a;
+    const double period = 2 * constants::kPi * std::sqrt(radius / kGravity) / a;
     const State<2> y = swing(*track, start, 3.7);
     const double slope = track->slope(y[0]), fall = track->z(start) - track->z(y[0]);
     const double kinetic = 0.5 * y[1] * y[1] * (1 + slope * slope);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/constants.h"
 #include "checks/verify/exact_bed_waves.h"
 #include "checks/verify/library.h"
 #include "checks/verify/trial.h"
@@ -24,9 +25,9 @@ constexpr double kSpare = 2e-3;  ///< share of the stress above the threshold: s
 /// node to node.
 Scene slab(const ErodingSheet& sheet, double cell, int per_side) {
     const double cosine = sheet.cosine(), ahead = 40.0;
-    const BedWave wave = sheet.fastest(2.0 * M_PI * cosine / kWavelength);
+    const BedWave wave = sheet.fastest(2.0 * constants::kPi * cosine / kWavelength);
     const auto at = [](std::complex<double> amplitude, double x) {
-        return kSmall * (amplitude * std::polar(1.0, 2.0 * M_PI * x / kWavelength)).real();
+        return kSmall * (amplitude * std::polar(1.0, 2.0 * constants::kPi * x / kWavelength)).real();
     };
     std::mt19937 random(20261125);  // the same numbers everywhere
     std::vector<double> rough(static_cast<std::size_t>(std::lround((kWavesBehind + kWavesLength + ahead) / cell)) + 1);
@@ -71,7 +72,8 @@ double amplitude(const std::vector<double>& heights, Index n) {
     std::complex<double> sum = 0.0;
     const auto count = static_cast<double>(heights.size());
     for (std::size_t i = 0; i < heights.size(); ++i)
-        sum += heights[i] * std::polar(1.0, -2.0 * M_PI * static_cast<double>(n) * static_cast<double>(i) / count);
+        sum += heights[i] *
+               std::polar(1.0, -2.0 * constants::kPi * static_cast<double>(n) * static_cast<double>(i) / count);
     return 2.0 * std::abs(sum) / count;
 }
 
@@ -80,7 +82,8 @@ double amplitude(const std::vector<double>& heights, Index n) {
 std::vector<double> amplitudes_by_length(std::vector<double> heights) {
     const auto count = static_cast<Index>(heights.size());
     for (Index i = 0; i < count; ++i)
-        heights[i] *= 0.5 - 0.5 * std::cos(2.0 * M_PI * (static_cast<double>(i) + 0.5) / static_cast<double>(count));
+        heights[i] *=
+            0.5 - 0.5 * std::cos(2.0 * constants::kPi * (static_cast<double>(i) + 0.5) / static_cast<double>(count));
     std::vector<double> bands;
     for (Index most = count / 2; most >= 4 * Index{kWaves}; most /= 2) {
         double sum = 0.0;
@@ -101,7 +104,7 @@ void add_waves(const ErodingSheet& sheet, const std::string& name, const Setup& 
         wave.push_back(amplitude(heights, kWaves)), bands.push_back(amplitudes_by_length(heights));
     }
     const double growth = std::log(wave[2] / wave[0]) / (time[2] - time[0]);
-    const double exact = sheet.fastest(2.0 * M_PI * sheet.cosine() / kWavelength).growth();
+    const double exact = sheet.fastest(2.0 * constants::kPi * sheet.cosine() / kWavelength).growth();
     m.add("growth_" + name, growth, "1/s"), m.add("error_" + name, growth / exact - 1.0);
     for (std::size_t n = 0; n < std::min<std::size_t>(3, bands[1].size()); ++n)
         m.add("cells_" + std::to_string(2 << n) + "_" + name, std::log(bands[2][n] / bands[1][n]) / (time[2] - time[1]),

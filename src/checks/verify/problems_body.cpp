@@ -34,7 +34,7 @@ struct Bar {
 /// A free bar in its first mode, v = v_0 cos(pi x / L): the mode's amplitude is back after 2 L / c.
 Measurement run_bar(const Setup& setup) {
     const Bar bar;
-    const auto mode = [&](double x) { return std::cos(M_PI * x / bar.length); };
+    const auto mode = [&](double x) { return std::cos(constants::kPi * x / bar.length); };
     const SolidScene s = bar.scene(setup, [&](double x) { return 1e-3 * bar.wave() * mode(x); });
     std::vector<double> shape;
     for (const Vec3& x : s.points.position) shape.push_back(mode(x.x()));
@@ -117,7 +117,7 @@ Measurement run_disc(const Setup& setup) {
     flow.advance(1e-9);  // points learn the motion around them
     const Vec3 start = flow.angular_momentum();
     const double kinetic = flow.status().kinetic, learnt = flow.status().numerical();
-    Measurement m = run_body(flow, 2.0 * M_PI / kSpin);
+    Measurement m = run_body(flow, 2.0 * constants::kPi / kSpin);
     m.add("angular_momentum_error", (flow.angular_momentum() - start).norm() / start.norm());
     m.add("kinetic_kept", flow.status().kinetic / kinetic);
     m.add("stored_share", flow.status().stored / kinetic);

@@ -264,7 +264,7 @@ Measurement run_slump(const Setup& setup) {
 /// Dubash et al. 2009, J. Non-Newtonian Fluid Mech. 158, 91). From h = 0 at x_0: x = x_0 - (h^2 / 2 - c h) / b, which
 /// reaches furthest at h = c.
 struct YieldedHeap {
-    double b, c = 0.5 * M_PI * b, x0 = 0.0;
+    double b, c = 0.5 * constants::kPi * b, x0 = 0.0;
     double depth(double x) const { return c + std::sqrt(std::max(0.0, c * c + 2.0 * b * (x0 - x))); }
     double front() const { return x0 + 0.5 * c * c / b; }
     double volume() const {  ///< below depth(), up to the front

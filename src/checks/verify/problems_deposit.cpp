@@ -85,7 +85,7 @@ constexpr double kCylinder = 0.9;  ///< radius of the released cylinder [m]
 Measurement run_axial(const Setup& setup) {
     const YieldMaterial material{1000.0, 50.0};
     const RoundDeposit deposit{material, 1.0};
-    const double cell = 2.0 / static_cast<double>(setup.cells), column = 1.0 / (M_PI * kCylinder * kCylinder);
+    const double cell = 2.0 / static_cast<double>(setup.cells), column = 1.0 / (constants::kPi * kCylinder * kCylinder);
     const Index n = static_cast<Index>(std::ceil(2.6 / cell)) + 1;
     Scene scene = scene_on(n, n, cell, [](double, double) { return 0.0; });
     set_material(scene, material, 30.0);

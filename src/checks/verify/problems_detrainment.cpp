@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/exact_detrainment.h"
 #include "checks/verify/library.h"
 #include "checks/verify/slab_middle.h"
@@ -16,7 +17,7 @@ Measurement run_slab(const Setup& setup) {
     constexpr double kSlopeDeg = 30.0, kEnd = 20.0, kLength = 850.0, kRoom = 200.0;
     const DetrainedSlab slab;
     const SlabState exact = slab.at(kEnd);
-    const double slope = kSlopeDeg * M_PI / 180.0, cosine = std::cos(slope),
+    const double slope = kSlopeDeg * constants::kPi / 180.0, cosine = std::cos(slope),
                  cell = 100.0 / static_cast<double>(setup.cells);
     const Index nx = static_cast<Index>(std::ceil((kLength + exact.way * cosine + 2.0 * kRoom) / cell)) + 1;
     Scene scene = scene_on(

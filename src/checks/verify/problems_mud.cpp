@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/body.h"
 #include "checks/verify/library.h"
 
@@ -50,7 +51,7 @@ double viscous_error(const Setup& setup, double floor, Measurement& m) {
     sheet.law = solid::Fluid{sheet.bulk(), kViscosity};
     const double cell = 1.0 / static_cast<double>(setup.cells);
     Mpm3d flow(sheet.scene(cell, setup.per_side));
-    m = joined(m, run_body(flow, 8.0 * 4.0 * Sheet::kDensity / (M_PI * M_PI * kViscosity)));
+    m = joined(m, run_body(flow, 8.0 * 4.0 * Sheet::kDensity / (constants::kPi * constants::kPi * kViscosity)));
     double off = 0.0, all = 0.0;
     for (Index p = 0; p < flow.body().points.count(); ++p) {
         const Vec3 x = flow.position(p);
@@ -105,7 +106,7 @@ Measurement run_mud_sheet(const Setup& setup) {
     sheet.law = solid::HerschelBulkley{sheet.bulk(), 100.0 * mud.yield_stress(), mud.consistency, mud.exponent,
                                        mud.yield_stress()};
     Mpm3d flow(sheet.scene(cell, setup.per_side));
-    const double crossing = 4.0 * mud.thickness * mud.thickness / (M_PI * M_PI * mud.diffusivity());
+    const double crossing = 4.0 * mud.thickness * mud.thickness / (constants::kPi * constants::kPi * mud.diffusivity());
     Measurement m = run_body(flow, 8.0 * crossing);
     // The middle has moved; its depth and the ends have hardly changed it.
     const double middle = 0.5 * sheet.length + 0.5 * mud.speed(mud.thickness) * flow.status().time;

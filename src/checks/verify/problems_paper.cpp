@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/lakes.h"
 #include "checks/verify/library.h"
 
@@ -80,7 +81,7 @@ Scene obstacle(const Setup& setup) {
     scene.density = 1200;
     scene.terrain = TerrainModel::shallow;
     scene.sides = Sides::wall;
-    scene.bed_law = bed::Voellmy{std::tan(12 * M_PI / 180), 200};
+    scene.bed_law = bed::Voellmy{std::tan(12 * constants::kPi / 180.0), 200};
     scene.rheology = rheology::Newtonian{10};
     fill(scene, [](double x, double y) { return x > 5 && x < 42.5 && y > 3 && y < 17 ? 10.0 : 0.0; }, {setup.per_side});
     return scene;

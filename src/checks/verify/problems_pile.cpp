@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/constants.h"
 #include "checks/verify/library.h"
 #include "checks/verify/trial.h"
 
@@ -31,7 +32,8 @@ std::vector<Pile> piles() {
     std::vector<Pile> all;
     for (const auto& [slope, flank, mu] : {std::array{0.2, 0.3, 0.6}, std::array{0.7, 0.2, 1.1}})
         for (const double degrees : {0.0, 27.0, 45.0})
-            for (const bool cone : {true, false}) all.push_back({slope, flank, mu, degrees * M_PI / 180, cone});
+            for (const bool cone : {true, false})
+                all.push_back({slope, flank, mu, degrees * constants::kPi / 180.0, cone});
     return all;
 }
 

@@ -1,6 +1,7 @@
 // A round column of water of 1 m is let go on dry ground or in water of 0.2 m (scheme study, section 4).
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/exact_radial_dam.h"
 #include "checks/verify/library.h"
 #include "checks/verify/trial.h"
@@ -23,7 +24,7 @@ double mean_radius(const Frame& frame, double level) {
     for (Index j = 0; j < frame.grid.ny; ++j)
         for (Index i = 0; i < frame.grid.nx; ++i)
             if (h[j * frame.grid.nx + i] > level) nodes += (i == 0 ? 0.5 : 1.0) * (j == 0 ? 0.5 : 1.0);
-    return frame.grid.cell * std::sqrt(4 * nodes / M_PI);
+    return frame.grid.cell * std::sqrt(4 * nodes / constants::kPi);
 }
 
 /// A quarter of the square, cells counted along its whole side; the walls are the symmetry.

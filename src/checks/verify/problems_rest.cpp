@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/body.h"
 #include "checks/verify/library.h"
 #include "checks/verify/trial.h"
@@ -12,7 +13,7 @@ namespace frana::verify {
 namespace {
 
 constexpr double kRestGravity = 10.0, kRestDensity = 1000.0, kDeepest = 1.0;  // [m/s^2], [kg/m^3], [m]
-constexpr double kRestSlope = 20.0 * M_PI / 180.0;
+constexpr double kRestSlope = 20.0 * constants::kPi / 180.0;
 
 /// A wedge of water against a wall at x = 0, level at z = kDeepest over a bed of 20 degrees, as columns one
 /// cell wide, of which a 3D stage from the start makes points half of that apart.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 
+#include "base/constants.h"
 #include "checks/verify/exact_similarity.h"
 #include "checks/verify/library.h"
 #include "checks/verify/reference_steep_pile.h"
@@ -11,7 +12,7 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kSimilaritySlope = 35 * M_PI / 180, kSimilarityEnd = 5.0;
+constexpr double kSimilaritySlope = 35 * constants::kPi / 180.0, kSimilarityEnd = 5.0;
 constexpr double kSimilarityReach = 240.0;  ///< the reference length: so many metres have Setup::cells cells
 
 const SimilarityPile kPile(35, 25, 80, 4);
@@ -30,7 +31,7 @@ Exact on_map(double turn, double t) {
 Exact steep_on_map(double t) {
     const double cosine = std::cos(kSimilaritySlope);
     const SteepPile::Plane plane{
-        std::tan(kSimilaritySlope), std::tan(25 * M_PI / 180), 4.0 / cosine, 80.0 * cosine, 80.0, 9.81};
+        std::tan(kSimilaritySlope), std::tan(25 * constants::kPi / 180.0), 4.0 / cosine, 80.0 * cosine, 80.0, 9.81};
     const auto pile = std::make_shared<const SteepPile>(plane, SteepPile::Form::steep, 5, t);
     return {[pile](double x, double y) { return pile->at(x, y).depth; },
             [pile](double x, double y) { return pile->at(x, y).u; },
@@ -45,7 +46,7 @@ Trial turned_trial(const Setup& setup, double turn, TerrainModel terrain) {
     const auto bed = [&](double x, double y) { return -std::tan(kSimilaritySlope) * (c * x + s * y); };
     Scene scene = scene_on(nx, nx, cell, bed, low, low);
     scene.terrain = terrain;
-    scene.bed_law = bed::Coulomb{std::tan(25 * M_PI / 180)};
+    scene.bed_law = bed::Coulomb{std::tan(25 * constants::kPi / 180.0)};
     fill_cut(scene, on_map(turn, 0.0).depth, {setup.per_side});
     Trial trial(std::move(scene), setup);
     trial.run_to(kSimilarityEnd);
@@ -65,7 +66,7 @@ Measurement run_similarity(const Setup& setup) {
     Measurement m = measured(steep, 0.0);
     double least = m.l2_depth, most = m.l2_depth;
     for (const double degrees : {15.0, 27.0, 45.0}) {
-        const double turn = degrees * M_PI / 180;
+        const double turn = degrees * constants::kPi / 180.0;
         Trial turned = turned_trial(setup, turn, TerrainModel::steep);
         const double error = measured(turned, turn).l2_depth;
         least = std::min(least, error);

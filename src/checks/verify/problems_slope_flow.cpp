@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 
+#include "base/constants.h"
 #include "checks/verify/exact_slope_flow.h"
 #include "checks/verify/library.h"
 #include "checks/verify/reference_steep_dam.h"
@@ -39,12 +40,12 @@ Measurement run_coulomb_slope(const Setup& setup) {
 
 /// AvaFrame's dam break on steep terrain: its lengths run along the slope and normal to it, X = x / cos, h = h_v cos,
 /// U = u / cos. Window x >= -73.21 m, before the middle of the reservoir's own rear wave (AvaFrame's xMiddle).
-constexpr double kDamSlope = 22 * M_PI / 180, kDamEnd = 5.0;
+constexpr double kDamSlope = 22 * constants::kPi / 180.0, kDamEnd = 5.0;
 
 Trial slope_dam_trial(const Setup& setup, TerrainModel terrain) {
     const double cosine = std::cos(kDamSlope), depth = SlopeDam::avaframe().depth / cosine;
     const double cell = 100.0 / static_cast<double>(setup.cells);
-    Scene scene = strip(cell, -160.0, 40.0, std::tan(kDamSlope), std::tan(21 * M_PI / 180));
+    Scene scene = strip(cell, -160.0, 40.0, std::tan(kDamSlope), std::tan(21 * constants::kPi / 180.0));
     scene.terrain = terrain;
     fill(scene, [&](double x, double) { return x > -120.0 && x < 0.0 ? depth : 0.0; }, {setup.per_side});
     Trial trial(std::move(scene), setup);
@@ -67,7 +68,8 @@ Exact linearised_dam() {
 /// The same dam by the steep equations themselves.
 Exact steep_dam() {
     constexpr double kBehind = 120.0;  // [m]; parcels of 1.2 cm change the depths by less than 3e-4
-    const SteepDam::Plane plane{std::tan(kDamSlope), std::tan(21 * M_PI / 180), 1.0 / std::cos(kDamSlope), 9.81};
+    const SteepDam::Plane plane{std::tan(kDamSlope), std::tan(21 * constants::kPi / 180.0), 1.0 / std::cos(kDamSlope),
+                                9.81};
     const auto dam = std::make_shared<const SteepDam>(plane, kBehind, kDamEnd, 10000);
     return {[dam](double x, double) { return dam->depth_at(x); },
             [dam](double x, double) { return dam->velocity_at(x); },

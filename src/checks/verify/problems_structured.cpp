@@ -43,7 +43,7 @@ Measurement run_spin(const Setup& setup) {
     const double given = spin();
     flow.advance(1e-9);  // columns learn the motion around them, and lose a little in doing so
     const double start = spin(), kinetic = flow.status().kinetic;
-    Measurement m = run_structured(flow, 2.0 * M_PI / kSpin * given / start);
+    Measurement m = run_structured(flow, 2.0 * constants::kPi / kSpin * given / start);
     double turned = 0.0, stretched = 0.0;
     for (Index p = 0; p < q.count(); ++p) {
         const Vec2 at = flow.position(p);

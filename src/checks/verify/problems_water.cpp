@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/exact_bowl.h"
 #include "checks/verify/exact_dam_break.h"
 #include "checks/verify/exact_radial_dam.h"
@@ -161,7 +162,7 @@ Measurement run_radial_dam(const Setup& setup) {
     double deep = 0.0;
     for (Index j = 0; j < half; ++j)
         for (Index i = 0; i < half; ++i) deep += flow.at(i, j).depth > kLevel;
-    m.front_error = cell * std::sqrt(4.0 * deep / M_PI) - reference.contour(kLevel);
+    m.front_error = cell * std::sqrt(4.0 * deep / constants::kPi) - reference.contour(kLevel);
     return m;
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/library.h"
 #include "checks/verify/water.h"
 
@@ -82,7 +83,7 @@ Measurement run_film(const Setup& setup) {
 /// u = u_0 sin(k y), here a cosine between walls that water slides along, dies at the rate nu (k^2 + chi / h^2). Nearly no
 /// gravity; the ends of the channel, which stop the flow, are too far to be felt in the middle.
 Measurement run_shear(const Setup& setup) {
-    constexpr double kWidth = 2.0, kWave = M_PI, kDepth = 1.5, kSpeed = 1e-3, kTime = 1.0, kThick = 0.1;
+    constexpr double kWidth = 2.0, kWave = constants::kPi, kDepth = 1.5, kSpeed = 1e-3, kTime = 1.0, kThick = 0.1;
     WaterScene scene;
     scene.grid = cells_over(3 * setup.cells, setup.cells, kWidth / static_cast<double>(setup.cells));
     scene.start = [](double, double y) { return WaterState{kDepth, kSpeed * std::cos(kWave * y), 0.0}; };

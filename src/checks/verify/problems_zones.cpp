@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/library.h"
 #include "checks/verify/slide.h"
 
@@ -13,7 +14,7 @@ namespace {
 struct TwoZones {
     double slope_deg = 25.0, before = 0.2, behind = 0.6, way = 100.0, gravity = 9.81;
 
-    double slope() const { return slope_deg * M_PI / 180; }
+    double slope() const { return slope_deg * constants::kPi / 180.0; }
     double acceleration(double mu) const { return gravity * (std::sin(slope()) - mu * std::cos(slope())); }
     /// src/shallow/THEORY.md (77)
     double border_speed() const { return std::sqrt(2 * acceleration(before) * way); }
@@ -54,7 +55,8 @@ struct Slid {
 Slid slide_over(const TwoZones& zones, const Setup& setup, double turn_deg, Measurement& m) {
     const double cosine = std::cos(zones.slope()), cell = 100.0 / static_cast<double>(setup.cells);
     const Function plane = [t = std::tan(zones.slope())](double s, double) { return -t * s; };
-    Slide slide{cell, turn_deg * M_PI / 180, kBorder * cell - zones.way * cosine, (zones.stop() + 20.0) * cosine};
+    Slide slide{cell, turn_deg * constants::kPi / 180.0, kBorder * cell - zones.way * cosine,
+                (zones.stop() + 20.0) * cosine};
     slide.per_side = setup.per_side;
     Scene scene = slide.scene(plane);
     scene.friction = friction_of(zones, scene.bed.geometry, slide);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/exact_dam_break.h"
 
 namespace frana::verify {
@@ -76,7 +77,7 @@ std::vector<Residual> steep_dam_residuals() {
         const double exact = ritter.at(x / kEnd).depth;
         off += std::abs(gentle.depth_at(x) - exact), whole += exact;
     }
-    const double tangent = std::tan(22 * M_PI / 180), friction = std::tan(21 * M_PI / 180);
+    const double tangent = std::tan(22 * constants::kPi / 180.0), friction = std::tan(21 * constants::kPi / 180.0);
     const SteepDam fine({tangent, friction, 1.0, 9.81}, kBehind, kEnd, 8000),
         coarse({tangent, friction, 1.0, 9.81}, kBehind, kEnd, 4000);
     double apart = 0.0, all = 0.0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/exact_similarity.h"
 
 namespace frana::verify {
@@ -44,7 +45,8 @@ void disc(int radii, int angles, Eigen::VectorXd& a, Eigen::VectorXd& b, Eigen::
     a.resize(count), b.resize(count), weight.resize(count);
     for (int k = 0; k < radii; ++k)
         for (int n = 0; n < angles; ++n) {
-            const double square = (k + 0.5) / radii, r = std::sqrt(square), turn = 2.0 * M_PI * (n + 0.5) / angles;
+            const double square = (k + 0.5) / radii, r = std::sqrt(square),
+                         turn = 2.0 * constants::kPi * (n + 0.5) / angles;
             const Eigen::Index at = static_cast<Eigen::Index>(k) * angles + n;
             a[at] = r * std::cos(turn), b[at] = r * std::sin(turn), weight[at] = 1.0 - square;
         }
@@ -170,8 +172,9 @@ double apart(const A& first, const B& second) {
 
 std::vector<Residual> steep_pile_residuals() {
     constexpr double kEnd = 5.0;
-    const double tangent = std::tan(35 * M_PI / 180), cosine = 1.0 / std::sqrt(1.0 + tangent * tangent);
-    const SteepPile::Plane plane{tangent, std::tan(25 * M_PI / 180), 4.0 / cosine, 80.0 * cosine, 80.0, 9.81};
+    const double tangent = std::tan(35 * constants::kPi / 180.0), cosine = 1.0 / std::sqrt(1.0 + tangent * tangent);
+    const SteepPile::Plane plane{tangent, std::tan(25 * constants::kPi / 180.0), 4.0 / cosine, 80.0 * cosine, 80.0,
+                                 9.81};
     const SteepPile linear(plane, SteepPile::Form::linearised, 3, kEnd), five(plane, SteepPile::Form::steep, 5, kEnd),
         seven(plane, SteepPile::Form::steep, 7, kEnd);
     const SimilarityPile theory(35, 25, 80, 4);

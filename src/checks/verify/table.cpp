@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "base/number_text.h"
+
 namespace frana::verify {
 namespace {
 
@@ -65,7 +67,7 @@ std::string table_row(const Measurement& m, bool with_time) {
         number(m.l1_momentum), number(m.l2_momentum), number(m.front_error), number(m.mass_error),
         number(m.energy_error), std::isnan(m.observed_order) ? "-" : fmt::format("{:.2f}", m.observed_order));
     for (const Extra& extra : m.extras)
-        row += fmt::format("  {} {}{}", extra.name, number(extra.value), extra.unit == "1" ? "" : " " + extra.unit);
+        row += fmt::format("  {} {}{}", extra.name, number(extra.value), after_number(extra.unit));
     if (with_time) row += fmt::format("  {:.2f} s", m.wall_seconds);
     return row;
 }

@@ -6,14 +6,15 @@
 
 namespace frana::bed {
 
-/// tau = mu sigma_n
-struct Coulomb {
-    double mu = 0.0;  ///< tan(friction angle) [1]
+/// tau = mu sigma_n. Number: double, or Double4 for four nodes that differ.
+template <class Number>
+struct CoulombOf {
+    Number mu{};  ///< tan(friction angle) [1]
 
     static constexpr const char* name = "coulomb";
     static constexpr const char* is = "";
-    static std::vector<Key<Coulomb>> keys() { return {friction_angle(&Coulomb::mu), friction(&Coulomb::mu)}; }
-    double friction_at_rest() const { return mu; }
+    static std::vector<Key<CoulombOf>> keys() { return {friction_angle(&CoulombOf::mu), friction(&CoulombOf::mu)}; }
+    Number friction_at_rest() const { return mu; }
 
     /// src/shallow/THEORY.md (37)
     template <class Real>
@@ -22,5 +23,6 @@ struct Coulomb {
         return max(driven - dt * mu * bed.normal_gravity, none);
     }
 };
+using Coulomb = CoulombOf<double>;
 
 }  // namespace frana::bed

@@ -6,20 +6,22 @@
 
 namespace frana::bed {
 
-/// tau = mu sigma_n + rho g |V|^2 / xi (Voellmy 1955)
-struct Voellmy {
-    double mu = 0.0;     ///< [1]
-    double xi = 1000.0;  ///< turbulence coefficient [m/s^2]
+/// tau = mu sigma_n + rho g |V|^2 / xi (Voellmy 1955). Number: double, or Double4 for four nodes that
+/// differ.
+template <class Number>
+struct VoellmyOf {
+    Number mu{};                    ///< [1]
+    Number xi = Number{} + 1000.0;  ///< turbulence coefficient [m/s^2]
 
     static constexpr const char* name = "voellmy";
     static constexpr const char* is = "";
-    static std::vector<Key<Voellmy>> keys() {
+    static std::vector<Key<VoellmyOf>> keys() {
         return {
-            friction_angle(&Voellmy::mu),
-            friction(&Voellmy::mu),
-            {&Voellmy::xi, "xi", "m/s^2", ranges::positive, "Voellmy's turbulence coefficient: larger runs faster"}};
+            friction_angle(&VoellmyOf::mu),
+            friction(&VoellmyOf::mu),
+            {&VoellmyOf::xi, "xi", "m/s^2", ranges::positive, "Voellmy's turbulence coefficient: larger runs faster"}};
     }
-    double friction_at_rest() const { return mu; }
+    Number friction_at_rest() const { return mu; }
 
     /// src/shallow/THEORY.md (39)
     template <class Real>
@@ -28,5 +30,6 @@ struct Voellmy {
         return riccati_speed<Real>(s0, driven, mu * bed.normal_gravity, quadratic, dt);
     }
 };
+using Voellmy = VoellmyOf<double>;
 
 }  // namespace frana::bed

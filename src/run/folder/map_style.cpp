@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/atomic_file.h"
+#include "base/number_text.h"
 #include "vtk_io/figures/map_range.h"
 
 namespace frana {
@@ -37,7 +38,7 @@ std::string label(double value, const std::string& unit) {
     const bool pascal = unit == "Pa";
     const double shown = pascal ? 1e-3 * value : value;
     const std::string number = std::abs(shown) >= 1e4 ? fmt::format("{:.0f}", shown) : fmt::format("{:.4g}", shown);
-    return number + (pascal ? " kPa" : unit == "1" ? "" : " " + unit);
+    return number + after_number(pascal ? "kPa" : unit);
 }
 
 std::string item(double value, const Colour& colour, const std::string& words) {

@@ -3,12 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/layer_name.h"
 #include "compare/outline.h"
 #include "io/gdal_reader.h"
 #include "scene/case_file.h"
+#include "scene/nodes_of_place.h"
 
 namespace frana {
 namespace {
@@ -83,16 +83,9 @@ void mark_mask(const std::string& file, const std::string& crs_wkt, Raster& mark
     const Raster mask = GdalReader().read_raster(
         file, {grid.x(0) - half, grid.y(0) - half, grid.x(grid.nx - 1) + half, grid.y(grid.ny - 1) + half}, crs_wkt,
         said_by_the_scene);
-    const GridGeometry& of = mask.geometry;
-    const auto pixel = [&](double at, double first) {
-        return static_cast<Index>(std::floor((at - first) / of.cell + 0.5));
-    };
     for (Index j = 0; j < grid.ny; ++j)
-        for (Index i = 0; i < grid.nx; ++i) {
-            const Index a = pixel(grid.x(i), of.x0), b = pixel(grid.y(j), of.y0);
-            const bool inside = a >= 0 && b >= 0 && a < of.nx && b < of.ny;
-            if (inside && mask.at(a, b) > 0.0) marks.at(i, j) = 1.0;
-        }
+        for (Index i = 0; i < grid.nx; ++i)
+            if (pixel_at(mask, grid.x(i), grid.y(j)) > 0.0) marks.at(i, j) = 1.0;
 }
 
 template <class Counts>
