@@ -326,9 +326,7 @@ TEST_CASE("Two phases have the same bits for any number of threads", "[mixture][
 TEST_CASE("Water bears columns by the pressure in their pores, in proportion until they are full", "[mixture]") {
     WaterExchange exchange;
     exchange.void_ratio = 0.5, exchange.pore_pressure = 0.8;
-    const double smooth = 0.0;
-    const FreeWater water{exchange,    TwoPhaseDrag(exchange.material), nullptr, nullptr, nullptr, nullptr, 0.0, {},
-                          {&smooth, 0}};
+    const FreeWater water{exchange, TwoPhaseDrag(exchange.material), nullptr, nullptr, nullptr, nullptr, 0.0, {}, {}};
     CHECK(water.support(2000.0, 1.0, 0.25) == Approx(0.5 * 0.8 * 0.5).epsilon(1e-15));
     CHECK(water.support(2000.0, 1.0, 0.5) == Approx(0.8 * 0.5).epsilon(1e-15));
     CHECK(water.support(2000.0, 1.0, 50.0) == Approx(0.8 * 0.5).epsilon(1e-15));
