@@ -84,6 +84,7 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     arrive(timed_("deposit", [&] { return transfer_->deposit(flow_, 0.5 * longest); }));
     if (fit_) fit_->level_error = off_level(flow_, *scene.still_surface);
     start_momentum_ = status_.momentum;
+    if (flow_.walls) close_by_walls(status_);
     if (status_.max_speed_on_map > 0.0)
         status_.kinetic = catch_up_on_copy().kinetic;  // else the first step would bring it
     signal_ += std::sqrt(flow_.gravity * status_.max_depth);
@@ -230,6 +231,7 @@ void DepthAveraged::arrive(const PointSums& points) {
     status_.particles = flow_.columns.count();
     status_.mass = points.mass;
     status_.momentum = {points.px, points.py};
+    if (flow_.walls) close_by_walls(status_);
     status_.potential = sums.potential;
     status_.max_depth = sums.max_depth;
     status_.covered_area = sums.covered_area;
@@ -272,9 +274,7 @@ void DepthAveraged::erode(double dt) {
     if (passages_) passages_->count_moved(flow_);
     status_.bed = erosion_->status();
     drift_ += sums.max_shift;
-    status_.dissipated += sums.lost;
-    status_.impulse[0] += sums.px;
-    status_.impulse[1] += sums.py;
+    account(of_bed(sums));
 }
 
 /// What comes in counts as at the start.
@@ -328,11 +328,20 @@ double DepthAveraged::step_length(double until) const {
     return status_.step_towards(until, longest_step());
 }
 
+void DepthAveraged::account(const FlowLedger& more) {
+    set_totals(since_start_.add(more), status_);
+    if (flow_.walls) close_by_walls(status_);
+}
+
+/// What walls push is not seen on the nodes: it is what else the points gained.
+void DepthAveraged::close_by_walls(Status& status) const {
+    for (std::size_t axis = 0; axis < 2; ++axis)
+        status.impulse[axis] = status.momentum[axis] + status.momentum_left[axis] - start_momentum_[axis];
+}
+
 void DepthAveraged::accumulate_grid_update(const GridUpdateSums& sums, double velocity_dt) {
     status_.kinetic = sums.kinetic;
-    status_.dissipated += sums.dissipated + velocity_dt * stress_power_;
-    status_.impulse[0] += sums.impulse_x;
-    status_.impulse[1] += sums.impulse_y;
+    account(of_grid_update(sums, velocity_dt * stress_power_));
     signal_ = sums.max_signal;
 }
 
@@ -340,18 +349,10 @@ void DepthAveraged::accumulate_points(const PointSums& sums) {
     signal_ = std::max(signal_, sums.max_signal);
     drift_ += sums.max_shift;
     status_.max_speed_on_map = sums.max_speed;
-    status_.impulse[0] += sums.wall_impulse_x;
-    status_.impulse[1] += sums.wall_impulse_y;
-    if (flow_.walls)  // what walls push is not seen on the nodes: it is what else the points gained
-        for (int axis = 0; axis < 2; ++axis) {
-            const double gathered = axis == 0 ? sums.px + sums.left_px : sums.py + sums.left_py;
-            status_.impulse[axis] = gathered + status_.momentum_left[axis] - start_momentum_[axis];
-        }
-    status_.mass_left += sums.left_mass;
-    lost_in_holes_ += sums.lost_in_holes;
-    status_.momentum_left[0] += sums.left_px;
-    status_.momentum_left[1] += sums.left_py;
-    status_.energy_left += sums.left_energy;
+    FlowLedger step = carried_out(sums);
+    step.lost_in_holes = sums.lost_in_holes;
+    step.impulse = {sums.wall_impulse_x, sums.wall_impulse_y};
+    account(step);
 }
 
 void DepthAveraged::require_finite(const PointSums& sums) const {
@@ -396,7 +397,8 @@ std::string remark_on_growth(const Status& now) {
 }  // namespace
 
 std::vector<std::string> DepthAveraged::remarks() const {
-    std::vector<std::string> remarks = remarks_on_lost(lost_in_holes_, status_.mass + status_.mass_left);
+    std::vector<std::string> remarks =
+        remarks_on_lost(since_start_.total().lost_in_holes, status_.mass + status_.mass_left);
     for (const LateEntry& late : extras().late)
         if (!late.at && !late.entered)
             remarks.push_back(

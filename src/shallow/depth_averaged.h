@@ -9,6 +9,7 @@
 #include "run/simulation.h"
 #include "shallow/erosion.h"
 #include "shallow/feed.h"
+#include "shallow/flow_ledger.h"
 #include "shallow/grid_update.h"
 #include "shallow/late.h"
 #include "shallow/mass_fit.h"
@@ -155,6 +156,8 @@ private:
     void accumulate_points(const PointSums& sums);
     void require_finite(const PointSums& sums) const;
 
+    void account(const FlowLedger& more);
+    void close_by_walls(Status& status) const;
     Status catch_up_on_copy();
     double fastest_node() const;
     void particle_fields(Frame& frame);
@@ -190,6 +193,7 @@ private:
     Peaks peaks_;
     StepClock timed_;
     Status status_;
+    Ledger<FlowLedger> since_start_, until_frame_;  ///< the second at the time of the last frame
     std::optional<MassFit> fit_;
 
     NodeBox shown_;  ///< in frames
@@ -201,7 +205,6 @@ private:
     double since_split_ = 0.0;                ///< ordinary steps since points were last split
     double drift_ = 0.0;                      ///< largest distance since the last sort [cells]
     double stress_power_ = 0.0;               ///< of the present deposit [W]
-    double lost_in_holes_ = 0.0;              ///< of the mass that left [kg]
     Vec2 centre_{0, 0};                       ///< of the release [cells]
 
     struct StressSum {

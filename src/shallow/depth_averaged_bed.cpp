@@ -7,9 +7,7 @@ namespace frana {
 void DepthAveraged::detrain(double dt) {
     const ExchangeSums sums = erosion_->detrain(flow_, dt);
     if (!(sums.taken < 0.0)) return;
-    status_.dissipated += sums.lost;
-    status_.impulse[0] += sums.px;
-    status_.impulse[1] += sums.py;
+    account(of_bed(sums));
     if (erosion_->any_gone()) sorter_.drop(flow_.columns, erosion_->gone(), flow_.active);
     status_.bed = erosion_->status();
 }
@@ -18,9 +16,7 @@ void DepthAveraged::detrain(double dt) {
 void DepthAveraged::settle() {
     const std::optional<ExchangeSums> sums = erosion_->settle(flow_, status_);
     if (!sums) return;
-    status_.dissipated += sums->lost;
-    status_.impulse[0] += sums->px;
-    status_.impulse[1] += sums->py;
+    account(of_bed(*sums));
     sorter_.drop(flow_.columns, erosion_->gone(), flow_.active);
     status_.bed = erosion_->status();
 }

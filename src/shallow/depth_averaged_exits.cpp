@@ -49,6 +49,7 @@ void DepthAveraged::catch_up() {
             held.vx[p] = static_cast<Real>(probe_.vx[p]), held.vy[p] = static_cast<Real>(probe_.vy[p]);
     });
     status_ = now.status;
+    since_start_ = until_frame_;
     status_.dt = 0.0;
 }
 
@@ -92,10 +93,10 @@ double DepthAveraged::take_in(const Seeds& seeds, const std::vector<Mat2>& gradi
         }
     });
     splitter_.set_next_id(splitter_.next_id() + seeds.count());
-    status_.mass_left -= came.left_mass;
-    status_.momentum_left[0] -= came.left_px;
-    status_.momentum_left[1] -= came.left_py;
-    status_.energy_left -= came.left_energy;
+    FlowLedger back = carried_in(came);  // it had left
+    std::swap(back.mass_in, back.mass_left);
+    back.mass_left = -back.mass_left;
+    account(back);
     status_.kinetic += kinetic;  // of nodes, and to the next grid update only
     signal_ = std::max(signal_, status_.max_speed_on_map);
     sorter_.sort(c, flow_.grid, {}, flow_.active);
@@ -132,10 +133,7 @@ void DepthAveraged::take_rows() {
         }
     });
     splitter_.set_next_id(splitter_.next_id() + rows.seeds.count());
-    status_.mass_in += came.left_mass;
-    status_.momentum_left[0] -= came.left_px;
-    status_.momentum_left[1] -= came.left_py;
-    status_.energy_left -= came.left_energy;
+    account(carried_in(came));
     status_.kinetic += kinetic;  // of nodes, and to the next grid update only
     for (Index n = 0; n < rows.seeds.count(); ++n)
         signal_ = std::max(
@@ -189,16 +187,15 @@ void DepthAveraged::take_late(const std::vector<const LateRelease*>& releases) {
     flow_.columns.with_real([&](auto real) {
         for (const LateRelease* release : releases) kinetic += place_late<decltype(real)>(*release, came);
     });
-    status_.mass_in += came.left_mass;
-    status_.momentum_left[0] -= came.left_px;
-    status_.momentum_left[1] -= came.left_py;
+    FlowLedger in = carried_in(came);
     status_.kinetic += kinetic;  // of nodes, and to the next grid update only
     signal_ = status_.max_speed_on_map;
     sorter_.sort(flow_.columns, flow_.grid, {}, flow_.active);
     drift_ = 0.0;
     arrive(timed_("deposit", [&] { return transfer_->deposit(flow_, 0.5 * longest_step()); }));
     signal_ = std::max(signal, status_.max_speed_on_map + std::sqrt(flow_.gravity * status_.max_depth));
-    status_.energy_left -= kinetic + (status_.potential - potential);
+    in.energy_left = -(kinetic + (status_.potential - potential));
+    account(in);
 }
 
 std::string DepthAveraged::why_not_add(const Seeds& columns) const {
@@ -243,10 +240,7 @@ void DepthAveraged::leave_at_exits() {
             leave<decltype(real)>(flow_, p, k, left);
         });
     }
-    status_.mass_left += left.left_mass;
-    status_.momentum_left[0] += left.left_px;
-    status_.momentum_left[1] += left.left_py;
-    status_.energy_left += left.left_energy;
+    account(carried_out(left));
     status_.kinetic = std::max(0.0, status_.kinetic - kinetic);  // of nodes, and to the next grid update only
     sorter_.drop(flow_.columns, gone, flow_.active);
     arrive(transfer_->deposit(flow_, 0.5 * (status_.dt + longest_step())));

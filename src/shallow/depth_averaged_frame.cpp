@@ -66,9 +66,8 @@ Status DepthAveraged::catch_up_on_copy() {
     transfer_->probe(flow_, probe_);
     Status now = status_;
     now.kinetic = sums.kinetic;
-    now.dissipated += sums.dissipated + 0.5 * status_.dt * stress_power_;
-    now.impulse[0] += sums.impulse_x;
-    now.impulse[1] += sums.impulse_y;
+    until_frame_ = since_start_;
+    set_totals(until_frame_.add(of_grid_update(sums, 0.5 * status_.dt * stress_power_)), now);
     now.momentum = {0.0, 0.0};
     double speed2 = 0.0;
     for (Index p = 0; p < flow_.columns.count(); ++p) {
@@ -77,9 +76,7 @@ Status DepthAveraged::catch_up_on_copy() {
         speed2 = std::max(speed2, probe_.vx[p] * probe_.vx[p] + probe_.vy[p] * probe_.vy[p]);
     }
     now.max_speed_on_map = std::sqrt(speed2);
-    if (flow_.walls)
-        for (int axis = 0; axis < 2; ++axis)
-            now.impulse[axis] = now.momentum[axis] + now.momentum_left[axis] - start_momentum_[axis];
+    if (flow_.walls) close_by_walls(now);
     return now;
 }
 

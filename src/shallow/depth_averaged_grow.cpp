@@ -44,7 +44,7 @@ void DepthAveraged::take_over(DepthAveraged& from, Index east, Index north) {
     if (late_) late_->take_over(*from.late_);
     if (passages_) passages_->take_over(*from.passages_);
     added_ = std::move(from.added_), mass_added_ = from.mass_added_;
-    lost_in_holes_ = from.lost_in_holes_;
+    since_start_ = from.since_start_;
     signal_ = from.signal_, since_split_ = from.since_split_, stress_power_ = from.stress_power_;
     centre_ = from.centre_ + Vec2(static_cast<double>(east), static_cast<double>(north));
     if (erosion_) {

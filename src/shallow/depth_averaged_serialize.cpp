@@ -88,8 +88,9 @@ void DepthAveraged::serialize_points(Archive& archive) {
 
 void DepthAveraged::serialize_sums(Archive& archive) {
     frana::serialize(archive, "status", status_);
-    archive.numbers("sums", {&signal_, &since_split_, &drift_, &stress_power_, &lost_in_holes_, &mass_added_,
-                             &start_momentum_[0], &start_momentum_[1], &centre_.x(), &centre_.y()});
+    since_start_.serialize(archive, "ledger");
+    archive.numbers("sums", {&signal_, &since_split_, &drift_, &stress_power_, &mass_added_, &start_momentum_[0],
+                             &start_momentum_[1], &centre_.x(), &centre_.y()});
     Index next_id = splitter_.next_id(), most = merger_ ? merger_->most() : 0, fitted = fit_ ? 1 : 0;
     archive.number("next_id", next_id);
     archive.number("most_in_a_square", most);

@@ -88,8 +88,8 @@ void Mpm3d::place(const SolidSeeds& seeds) {
     const GridGeometry3d& g = body_.grid.geometry();
     const Index before = q.count(), count = static_cast<Index>(seeds.mass.size());
     q.resize(before + count);
-    double given = 0.0;
-    CompensatedSum total(status_.mass);
+    SolidLedger given;
+    CompensatedSum total(status_.mass), energy_given;
     Vec3 moment = status_.mass * status_.centre;
     for (Index p = before; p < before + count; ++p) {
         const std::size_t n = static_cast<std::size_t>(p - before);
@@ -103,19 +103,20 @@ void Mpm3d::place(const SolidSeeds& seeds) {
         q.mass[p] = mass;
         q.rest_volume[p] = mass / density_;
         q.id[p] = next_id_++;
-        status_.momentum_given += mass * seeds.velocity[n];
+        given.momentum_given += mass * seeds.velocity[n];
         status_.momentum += mass * seeds.velocity[n];
         moment += mass * seeds.position[n];
         total.add(mass);
         const double kinetic = 0.5 * mass * speed * speed, potential = -mass * body_.gravity.dot(seeds.position[n]),
                      stored = q.rest_volume[p] * energy;
         status_.kinetic += kinetic, status_.potential += potential, status_.stored += stored;
-        given += kinetic + potential + stored;
+        energy_given.add(kinetic + potential + stored);
         status_.speeds += mass * speed;
         status_.volume += q.j[p] * q.rest_volume[p];
         status_.max_speed = std::max(status_.max_speed, speed);
     }
-    status_.energy_given += given;
+    given.energy_given = energy_given.value();
+    account(given);
     status_.mass = total.value();
     if (status_.mass > 0.0) status_.centre = moment / status_.mass;
     status_.points = q.count();
@@ -293,25 +294,27 @@ void Mpm3d::accumulate() {
     for (const std::vector<Vec3>* list : {&body_.tile_impulse, &body_.point_impulse})
         for (std::size_t n = 0; n < list->size(); ++n) body_.impulse[n % body_.surfaces.size()] += (*list)[n];
     if (body_.barriers != 0) accumulate_barrier_impulses();
-    for (const Vec3& given : body_.ghosts.tile_impulse) status_.ghost_impulse += given;
-    status_.weight_impulse += status_.dt * (all.mass + all.left_mass) * body_.gravity;
+    SolidLedger step;
+    for (const Vec3& given : body_.ghosts.tile_impulse) step.ghost_impulse += given;
+    step.weight_impulse = status_.dt * (all.mass + all.left_mass) * body_.gravity;
     require_finite(all);
     status_.points = body_.points.count() - left;
     status_.mass = all.mass;
     status_.momentum = all.momentum;
     status_.kinetic = all.kinetic;
     status_.stored = all.stored;
-    status_.material += all.material, status_.contact_work += all.contact_work, status_.friction += all.friction;
+    step.material = all.material, step.contact_work = all.contact_work, step.friction = all.friction;
     status_.speeds = all.speeds;
     status_.volume = all.volume;
     status_.max_speed = std::sqrt(all.max_speed2);
-    status_.mass_left += all.left_mass;
-    status_.momentum_left += all.left_momentum;
-    status_.energy_left += all.left_energy;
+    step.mass_left = all.left_mass, step.momentum_left = all.left_momentum, step.energy_left = all.left_energy;
+    account(step);
     if (all.mass > 0.0) status_.centre = g.origin + g.cell / all.mass * all.moment;
     status_.potential = -all.mass * body_.gravity.dot(status_.centre);
     drift_ += all.max_shift;
 }
+
+void Mpm3d::account(const SolidLedger& more) { static_cast<SolidLedger&>(status_) = since_start_.add(more); }
 
 void Mpm3d::accumulate_barrier_impulses() {
     for (const auto* lists : {&body_.node_impulses, &body_.point_impulses})

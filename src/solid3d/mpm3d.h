@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/constants.h"
 #include "law/solid_law.h"
+#include "mpm/ledger.h"
 #include "mpm/step_clock.h"
 #include "observe/frame.h"
 #include "solid3d/face_ledger.h"
@@ -67,27 +68,32 @@ struct SolidScene {
     SolidSeeds points;
 };
 
+/// What points were given and lost since the start, or in a step (mpm/ledger.h).
+struct SolidLedger {
+    double mass_left = 0.0;        ///< gone through the grid's sides [kg]
+    double energy_left = 0.0;      ///< kinetic, potential and stored, carried out [J]
+    double energy_given = 0.0;     ///< the same at the start and with what was added since [J]
+    double friction = 0.0;         ///< lost along surfaces [J]
+    double contact_work = 0.0;     ///< by the forces of surfaces and of adjacent material; impacts lose [J]
+    double material = 0.0;         ///< lost to the law: yielding, viscosity [J]
+    Vec3 momentum_left{0, 0, 0};   ///< carried out [kg m/s]
+    Vec3 momentum_given{0, 0, 0};  ///< at the start and with what was added since [kg m/s]
+    Vec3 weight_impulse{0, 0, 0};  ///< of gravity [kg m/s]
+    Vec3 ghost_impulse{0, 0, 0};   ///< of adjacent material [kg m/s]
+};
+
 /// Sums over the points after a step.
-struct SolidStatus : Clock {
+struct SolidStatus : Clock, SolidLedger {
     Index points = 0;
-    double mass = 0.0, mass_left = 0.0;  ///< in the grid; gone through its sides [kg]
-    Vec3 momentum{0, 0, 0};              ///< [kg m/s]
-    Vec3 momentum_left{0, 0, 0};         ///< carried out [kg m/s]
-    Vec3 momentum_given{0, 0, 0};        ///< at the start and with what was added since [kg m/s]
-    double energy_left = 0.0;            ///< kinetic, potential and stored, carried out [J]
-    double energy_given = 0.0;           ///< the same at the start and with what was added since [J]
-    Vec3 weight_impulse{0, 0, 0};        ///< of gravity since the start [kg m/s]
-    Vec3 ghost_impulse{0, 0, 0};         ///< of material beside the points since the start [kg m/s]
-    Vec3 centre{0, 0, 0};                ///< of mass [m]
-    double kinetic = 0.0;                ///< sum of m v^2 / 2 [J]
-    double potential = 0.0;              ///< sum of -m gravity . x [J]
-    double stored = 0.0;                 ///< of deformation, that unloading gives back [J]
-    double friction = 0.0;               ///< lost along surfaces since the start [J]
-    double contact_work = 0.0;           ///< given by pushes of surfaces and of material beside; impacts lose [J]
-    double material = 0.0;               ///< lost to the law since the start: yielding, viscosity [J]
-    double speeds = 0.0;                 ///< sum of m |v| [kg m/s]
-    double volume = 0.0;                 ///< sum of J V_0 [m^3]
-    double max_speed = 0.0;              ///< [m/s]
+    double mass = 0.0;       ///< in the grid [kg]
+    Vec3 momentum{0, 0, 0};  ///< [kg m/s]
+    Vec3 centre{0, 0, 0};    ///< of mass [m]
+    double kinetic = 0.0;    ///< sum of m v^2 / 2 [J]
+    double potential = 0.0;  ///< sum of -m gravity . x [J]
+    double stored = 0.0;     ///< of deformation, that unloading gives back [J]
+    double speeds = 0.0;     ///< sum of m |v| [kg m/s]
+    double volume = 0.0;     ///< sum of J V_0 [m^3]
+    double max_speed = 0.0;  ///< [m/s]
 
     /// What the scheme lost since the start: the transfers between points and nodes, finite steps [J].
     double numerical() const {
@@ -258,6 +264,7 @@ private:
     void make_room_for_impulses();
     double step_length(double until) const;
     void accumulate();
+    void account(const SolidLedger& more);
     void accumulate_barrier_impulses();
     void require_finite(const SolidSums& sums) const;
     DepartedPoint departed(Index p) const;
@@ -269,6 +276,7 @@ private:
     Sorter3d sorter_;
     StepClock timed_;
     SolidStatus status_;
+    Ledger<SolidLedger> since_start_;
     double density_, cfl_, sound_speed_, blending_, drift_ = 0.0;
     Index next_id_ = 0;
     std::vector<DepartedPoint> departed_;  ///< when they are noted

@@ -20,13 +20,16 @@ DepartedPoint Mpm3d::departed(Index p) const {
 
 void Mpm3d::leave() {
     if (notes_) departed_.reserve(departed_.size() + static_cast<std::size_t>(body_.points.count()));
+    SolidLedger gone;
+    CompensatedSum energy;
     for (Index p = 0; p < body_.points.count(); ++p) {
         const DepartedPoint left = departed(p);
         if (notes_) departed_.push_back(left);
-        status_.momentum_left += left.mass * left.velocity;
-        status_.energy_left += left.energy;
+        gone.momentum_left += left.mass * left.velocity;
+        energy.add(left.energy);
     }
-    status_.mass_left += status_.mass;
+    gone.mass_left = status_.mass, gone.energy_left = energy.value();
+    account(gone);
     body_.points.resize(0);
     body_.points.each([](Array& column) { column.shrink_to_fit(); });
     status_.points = 0;

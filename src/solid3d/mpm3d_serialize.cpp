@@ -10,10 +10,9 @@ void serialize_status(Archive& archive, SolidStatus& s) {
     const Archive::Part part(archive, "status");
     archive.number("step", s.step);
     archive.number("points", s.points);
-    std::vector<double*> numbers = {&s.time,    &s.dt,        &s.mass,         &s.mass_left, &s.energy_left,
-                                    &s.kinetic, &s.potential, &s.speeds,       &s.volume,    &s.max_speed,
-                                    &s.stored,  &s.friction,  &s.contact_work, &s.material,  &s.energy_given};
-    for (Vec3* v : {&s.momentum, &s.momentum_left, &s.momentum_given, &s.weight_impulse, &s.ghost_impulse, &s.centre})
+    std::vector<double*> numbers = {&s.time,   &s.dt,     &s.mass,      &s.kinetic, &s.potential,
+                                    &s.speeds, &s.volume, &s.max_speed, &s.stored};
+    for (Vec3* v : {&s.momentum, &s.centre})
         for (int k = 0; k < 3; ++k) numbers.push_back(&(*v)[k]);
     archive.numbers("sums", numbers);
 }
@@ -23,6 +22,8 @@ void serialize_status(Archive& archive, SolidStatus& s) {
 void Mpm3d::serialize(Archive& archive) {
     serialize_points(archive, body_.points);
     serialize_status(archive, status_);
+    since_start_.serialize(archive, "ledger");
+    static_cast<SolidLedger&>(status_) = since_start_.total();
     std::vector<double*> impulses;
     for (Vec3& impulse : body_.impulse)
         for (int k = 0; k < 3; ++k) impulses.push_back(&impulse[k]);

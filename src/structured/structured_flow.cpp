@@ -245,10 +245,11 @@ void StructuredFlow::accumulate() {
         all.left_confined += tile.left_confined, all.lost_in_holes += tile.lost_in_holes;
         if (tile.bad >= 0) all.bad = tile.bad;
     }
+    StructuredLedger step;
     for (const StructuredTally& tile : body_.tallies) {
-        status_.impulse.add(tile.impulse);
-        status_.friction += tile.friction, status_.obstacle_work += tile.obstacles, status_.dragged += tile.drag;
-        status_.squeezed += tile.squeezed, status_.outrun += tile.outrun;
+        step.impulse.add(tile.impulse);
+        step.friction += tile.friction, step.obstacle_work += tile.obstacles, step.dragged += tile.drag;
+        step.squeezed += tile.squeezed, status_.outrun += tile.outrun;
     }
     update_totals();
     if (all.bad >= 0)
@@ -257,15 +258,14 @@ void StructuredFlow::accumulate() {
                         "that are not finite; a smaller cfl may help",
                         status_.step, status_.time, status_.dt, body_.points.id[all.bad]));
     status_.mass = all.mass, status_.momentum = all.momentum, status_.kinetic = all.kinetic;
-    status_.stored = all.stored, status_.worked += all.worked;
-    status_.energy_left += all.left_energy;
+    status_.stored = all.stored, step.worked = all.worked;
+    step.energy_left = all.left_energy, step.released = all.released, step.confined_left = all.left_confined;
+    step.lost_in_holes = all.lost_in_holes, step.mass_left = all.left_mass, step.momentum_left = all.left_momentum;
+    static_cast<StructuredLedger&>(status_) = since_start_.add(step);
     status_.damage = all.mass > 0.0 ? all.damaged / all.mass : 0.0;
     status_.max_speed = std::sqrt(all.max_speed2);
     wave_ = all.max_wave, signal_ = all.max_signal;
     if (all.damaged > 0.0 && !body_.grains) begin_grains();
-    status_.released += all.released, status_.confined_left += all.left_confined;
-    status_.lost_in_holes += all.lost_in_holes;
-    status_.mass_left += all.left_mass, status_.momentum_left += all.left_momentum;
     drift_ += status_.dt * status_.max_speed / body_.grid.cell();
     if (all.left_mass > 0.0 || drift_ > kDriftLimit - 1.0) sort();
     if (body_.grains && status_.step % kStepsBetweenSplits == 0) split();

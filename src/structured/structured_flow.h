@@ -11,6 +11,7 @@
 #include "law/free_water.h"
 #include "law/structured_law.h"
 #include "mpm/halving.h"
+#include "mpm/ledger.h"
 #include "mpm/step_clock.h"
 #include "observe/frame.h"
 #include "shallow/flow.h"
@@ -63,11 +64,11 @@ struct StructuredScene {
 
 /// Impulses on the material since the start [kg m/s].
 struct StructuredImpulses {
-    Vec2 weight{0, 0};    ///< gravity along the plane, with the ground's push and that of free water's pressure
-    Vec2 pressure{0, 0};  ///< of grains, against the ground and by the form that is not quite in balance
-    Vec2 friction{0, 0};  ///< at the bed
-    Vec2 obstacles{0, 0};
-    Vec2 water{0, 0};  ///< drag of free water, less what was released into it
+    Flat2 weight{0, 0};    ///< gravity along the plane, with the ground's push and that of free water's pressure
+    Flat2 pressure{0, 0};  ///< of grains, against the ground and by the form that is not quite in balance
+    Flat2 friction{0, 0};  ///< at the bed
+    Flat2 obstacles{0, 0};
+    Flat2 water{0, 0};  ///< drag of free water, less what was released into it
     void add(const StructuredImpulses& o) {
         weight += o.weight, pressure += o.pressure, friction += o.friction, obstacles += o.obstacles, water += o.water;
     }
@@ -84,27 +85,34 @@ struct StructuredTally {
     double kinetic = 0.0, potential = 0.0;   ///< after the step; of the places before it
 };
 
-/// Sums over the points after a step.
-struct StructuredStatus : Clock {
-    Index points = 0;
-    double mass = 0.0, mass_left = 0.0;                              ///< in the grid; gone through its sides [kg]
-    double lost_in_holes = 0.0;                                      ///< of what is gone, in holes of the terrain [kg]
-    double released = 0.0;                                           ///< water given to the nodes since the start [m^3]
-    double confined_left = 0.0;                                      ///< water in columns that have left [m^3]
-    Vec2 momentum{0, 0}, momentum_left{0, 0}, momentum_given{0, 0};  ///< present, carried out, at the start [kg m/s]
+/// What columns gained and lost since the start, or in a step (mpm/ledger.h).
+struct StructuredLedger {
+    double mass_left = 0.0;      ///< gone through the grid's sides [kg]
+    double lost_in_holes = 0.0;  ///< of that, in holes of the terrain [kg]
+    double energy_left = 0.0;    ///< carried out: motion along the bed, and height above z = 0 [J]
+    double released = 0.0;       ///< water given to the nodes [m^3]
+    double confined_left = 0.0;  ///< water in columns that have left [m^3]
+    double friction = 0.0;       ///< lost at the bed [J]
+    double obstacle_work = 0.0;  ///< lost to obstacles [J]
+    double squeezed = 0.0;       ///< lost by grains as they spread or are squeezed [J]
+    double dragged = 0.0;        ///< lost by columns and water to the drag between them [J]
+    double worked = 0.0;         ///< by the strains of the structure: stored, or lost by yielding [J]
+    Flat2 momentum_left{0, 0};   ///< carried out [kg m/s]
     StructuredImpulses impulse;
-    double kinetic = 0.0;                        ///< sum of m v^2 / 2, in the plane of the columns [J]
-    double damage = 0.0;                         ///< mean over the mass [1]
-    double max_speed = 0.0;                      ///< [m/s]
-    double bed_kinetic = 0.0, potential = 0.0;   ///< of the nodes, along the bed and above z = 0 [J]
-    double stored = 0.0;                         ///< elastic, of the structure in the plane [J]
-    double friction = 0.0, obstacle_work = 0.0;  ///< lost at the bed and to obstacles since the start [J]
-    double squeezed = 0.0;                       ///< lost by grains as they spread or are squeezed since the start [J]
-    double dragged = 0.0;      ///< lost by columns and water to the drag between them since the start [J]
-    Index outrun = 0;          ///< nodes and steps in which drag was too weak for xi, which was left out there
-    double worked = 0.0;       ///< by the strains of the structure since the start: stored, or lost by yielding [J]
-    double energy_left = 0.0;  ///< carried out: motion along the bed, and height above z = 0 [J]
-    double flow_steps = 0.0;   ///< sum of each step's bound over the depth-averaged flow's
+};
+
+/// Sums over the points after a step.
+struct StructuredStatus : Clock, StructuredLedger {
+    Index points = 0;
+    double mass = 0.0;                          ///< in the grid [kg]
+    Vec2 momentum{0, 0}, momentum_given{0, 0};  ///< present, at the start [kg m/s]
+    double kinetic = 0.0;                       ///< sum of m v^2 / 2, in the plane of the columns [J]
+    double damage = 0.0;                        ///< mean over the mass [1]
+    double max_speed = 0.0;                     ///< [m/s]
+    double bed_kinetic = 0.0, potential = 0.0;  ///< of the nodes, along the bed and above z = 0 [J]
+    double stored = 0.0;                        ///< elastic, of the structure in the plane [J]
+    Index outrun = 0;         ///< nodes and steps in which drag was too weak for xi, which was left out there
+    double flow_steps = 0.0;  ///< sum of each step's bound over the depth-averaged flow's
 };
 
 /// Sums of the loops over points, tile by tile.
@@ -249,6 +257,7 @@ private:
     std::vector<Index> left_;  ///< tiles of the list before
     StepClock timed_;
     StructuredStatus status_;
+    Ledger<StructuredLedger> since_start_;
     double cfl_, sound_speed_;
     bool hydrostatic_;
     double wave_ = 0.0;    ///< largest speed with which surfaces and columns run, both ways of the grid at once [m/s]

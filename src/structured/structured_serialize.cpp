@@ -11,13 +11,9 @@ void serialize_status(Archive& archive, StructuredStatus& s) {
     archive.number("step", s.step);
     archive.number("points", s.points);
     archive.number("outrun", s.outrun);
-    std::vector<double*> numbers = {
-        &s.time,      &s.dt,          &s.mass,          &s.mass_left,     &s.kinetic,       &s.damage,  &s.max_speed,
-        &s.potential, &s.bed_kinetic, &s.stored,        &s.friction,      &s.obstacle_work, &s.worked,  &s.energy_left,
-        &s.released,  &s.dragged,     &s.confined_left, &s.lost_in_holes, &s.flow_steps,    &s.squeezed};
-    StructuredImpulses& i = s.impulse;
-    for (Vec2* v : {&s.momentum, &s.momentum_left, &s.momentum_given, &i.weight, &i.pressure, &i.friction, &i.obstacles,
-                    &i.water})
+    std::vector<double*> numbers = {&s.time,      &s.dt,        &s.mass,        &s.kinetic, &s.damage,
+                                    &s.max_speed, &s.potential, &s.bed_kinetic, &s.stored,  &s.flow_steps};
+    for (Vec2* v : {&s.momentum, &s.momentum_given})
         for (int k = 0; k < 2; ++k) numbers.push_back(&(*v)[k]);
     archive.numbers("sums", numbers);
 }
@@ -27,6 +23,8 @@ void serialize_status(Archive& archive, StructuredStatus& s) {
 void StructuredFlow::serialize(Archive& archive) {
     serialize_points(archive, body_.points);
     serialize_status(archive, status_);
+    since_start_.serialize(archive, "ledger");
+    static_cast<StructuredLedger&>(status_) = since_start_.total();
     archive.numbers("bounds", {&wave_, &signal_, &drift_, &rules_.least_mass});
     Index grains = body_.grains ? 1 : 0;
     archive.number("grains", grains);

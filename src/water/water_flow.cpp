@@ -290,7 +290,7 @@ WaterSums WaterFlow::summed() const {
 /// The sums of a step.
 void WaterFlow::accumulate() {
     const WaterSums all = summed();
-    status_.ledger.add(all.ledger);
+    status_.ledger = since_start_.add(all.ledger);
     take(all);
 }
 
@@ -317,8 +317,9 @@ void WaterFlow::take_changes(const std::vector<Index>& tiles) {
     const Vec2 momentum = status_.momentum;
     for (std::size_t n = 0; n < body_.work.size(); ++n) body_.sums[n] = tile_sums(body_, body_.work[n]);
     take(summed());
-    status_.ledger.released += status_.volume - volume;
-    status_.ledger.columns += status_.momentum - momentum;
+    WaterLedger from_columns;
+    from_columns.released = status_.volume - volume, from_columns.columns = status_.momentum - momentum;
+    status_.ledger = since_start_.add(from_columns);
 }
 
 double WaterFlow::due_so_far() const {

@@ -14,6 +14,7 @@
 #include "law/bed/law_map.h"
 #include "law/free_water.h"
 #include "law/water_friction.h"
+#include "mpm/ledger.h"
 #include "mpm/on_storage.h"
 #include "mpm/step_clock.h"
 #include "mpm/tile_grid.h"
@@ -80,17 +81,17 @@ struct WaterScene {
     double film = 1e-6;  ///< water as shallow as this stays where it is [m]
 };
 
-/// Sums over density since the start, or of one step: volumes [m^3], momentum [m^4/s].
+/// Sums over density since the start, or of one step (mpm/ledger.h): volumes [m^3], momentum [m^4/s].
 struct WaterLedger {
     double rained = 0.0, infiltrated = 0.0, left = 0.0;
-    double entered = 0.0;                                  ///< from a lake beyond sides
-    double fed = 0.0;                                      ///< by sources
-    Vec2 momentum_left{0, 0}, momentum_infiltrated{0, 0};  ///< carried out, less what entered brought
-    double released = 0.0;                                 ///< given by columns
-    Vec2 columns{0, 0};                                    ///< of what columns released, and their drag
-    Vec2 ground{0, 0};                                     ///< push of bed and confined mass
-    Vec2 walls{0, 0};                                      ///< push of walls, and of the water beyond open sides
-    Vec2 friction{0, 0};                                   ///< at the bed, and what films lose that stop
+    double entered = 0.0;                                   ///< from a lake beyond sides
+    double fed = 0.0;                                       ///< by sources
+    Flat2 momentum_left{0, 0}, momentum_infiltrated{0, 0};  ///< carried out, less what entered brought
+    double released = 0.0;                                  ///< given by columns
+    Flat2 columns{0, 0};                                    ///< of what columns released, and their drag
+    Flat2 ground{0, 0};                                     ///< push of bed and confined mass
+    Flat2 walls{0, 0};                                      ///< push of walls, and of the water beyond open sides
+    Flat2 friction{0, 0};                                   ///< at the bed, and what films lose that stop
     /// Energy over density [m^5/s^2]: lost at the bed, by films that stop and in speeding up rain; lost to viscosity inside;
     /// gone with the water through open sides and into the ground, less what rain, sources and entering water brought, heights
     /// above the datum.
@@ -233,6 +234,7 @@ private:
     WaterBody body_;
     StepClock timed_;
     WaterStatus status_;
+    Ledger<WaterLedger> since_start_;
     std::vector<std::uint8_t> wanted_;  ///< per tile: on the next list
     std::vector<std::uint8_t> rained_;  ///< per tile: rain may fall on it, a source be there, or a lake come in
     std::vector<WaterSource> sources_;

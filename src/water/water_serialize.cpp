@@ -6,18 +6,6 @@
 #include "water/water_flow.h"
 
 namespace frana {
-namespace {
-
-void serialize_ledger(WaterLedger& l, std::vector<double*>& numbers) {
-    for (double* one :
-         {&l.rained, &l.infiltrated, &l.left, &l.entered, &l.fed, &l.released, &l.braked, &l.sheared, &l.energy_out})
-        numbers.push_back(one);
-    for (Vec2* v : {&l.momentum_left, &l.momentum_infiltrated, &l.columns, &l.ground, &l.walls, &l.friction})
-        for (int k = 0; k < 2; ++k) numbers.push_back(&(*v)[k]);
-}
-
-}  // namespace
-
 /// No water on the tiles of the list: what is taken up again may lie on others.
 void WaterFlow::clear_tiles() {
     for (const Index tile : body_.work) {
@@ -36,8 +24,9 @@ void WaterFlow::serialize(Archive& archive) {
                                     &status_.kinetic, &status_.max_speed, &signal_};
     for (Vec2* v : {&status_.momentum, &status_.momentum_given})
         for (int k = 0; k < 2; ++k) numbers.push_back(&(*v)[k]);
-    serialize_ledger(status_.ledger, numbers);
     archive.numbers("sums", numbers);
+    since_start_.serialize(archive, "ledger");
+    status_.ledger = since_start_.total();
     archive.array("tiles", body_.work);
     timed_.serialize(archive);
     std::vector<double> cells;
