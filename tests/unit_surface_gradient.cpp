@@ -102,3 +102,23 @@ TEST_CASE("Friction sees a front as deep as the flow behind it, and other edges 
     CHECK(thin < 0.2 * 2.0);
     CHECK(least > 0.9 * 25.0 / 32.0 * 2.0);
 }
+
+TEST_CASE("A margin that only round-off moves has no direction, and its own depth", "[solver][surface]") {
+    for (const double speed : {1e-17, 1e-3}) {
+        Scene scene = verify::scene_on(40, 40, 2.0, [](double, double) { return 0.0; });
+        verify::fill(scene, [](double x, double y) { return y > 20 && y < 60 && x > 10 && x < 43 ? 2.0 : 0.0; });
+        scene.particles.vx.assign(scene.particles.x.size(), speed);
+        scene.particles.vy.assign(scene.particles.x.size(), 0.0);
+        const DepthAveraged simulation(scene);
+        const Nodes& nodes = simulation.flow().nodes;
+        double most = 0.0;  // seen over its own
+        for (Index k = 0; k < simulation.flow().grid.size(); ++k)
+            if (nodes.flags[k] & kMargin) most = std::max(most, nodes.law_depth[k] / nodes.depth[k]);
+        CAPTURE(speed);
+        // (1e-17 / 1e-8 sqrt(g h))^2 of the mass behind is nothing. What creeps has all of it.
+        if (speed < 1e-9)
+            CHECK(most == Approx(1.0).epsilon(1e-14));
+        else
+            CHECK(most > 2.0);
+    }
+}

@@ -380,8 +380,11 @@ void depth_of_four(Flow& flow, const DepthRequest& request, Index k, Index i, In
 /// whose depth is a small part of the front's. Taken for the flow's own, it would give drag that grows as depth falls a hold
 /// on the front that it has not: the flow behind would pile up on it. So the depth is that of the mass behind, if that is
 /// more: of nodes that the node moves away from, by the cosine of twice the angle. Beside and behind a flow its edge is thin.
-double depth_at_margin(const double* h, Index up, const Pair& velocity) {
+/// What moves by round-off alone has no direction.
+double depth_at_margin(const double* h, Index up, const Pair& velocity, double gravity) {
+    constexpr double kStill2 = 1e-16;  // of the wave's speed, squared: a metre a year
     const double speed2 = velocity.x * velocity.x + velocity.y * velocity.y;
+    const double moving2 = std::max(speed2, kStill2 * gravity * *h);
     double sum = *h, square = *h * *h;
     for (Index dj = -1; dj <= 1; ++dj)
         for (Index di = -1; di <= 1; ++di) {
@@ -389,7 +392,7 @@ double depth_at_margin(const double* h, Index up, const Pair& velocity) {
             const double away = -(velocity.x * x + velocity.y * y), distance2 = x * x + y * y;
             const double weight = 2.0 * away * away - speed2 * distance2;  // times both squares
             if (!(away > 0.0) || !(weight > 0.0)) continue;
-            const double near = h[dj * up + di], share = weight / (speed2 * distance2);
+            const double near = h[dj * up + di], share = weight / (moving2 * distance2);
             sum += share * near, square += share * near * near;
         }
     return square > *h * sum ? square / sum : *h;
@@ -454,7 +457,8 @@ void mark_margin(Flow& flow) {
                 if (!(inner & bit)) {
                     flag |= kMargin;
                     if (flow.scheme.margin)
-                        flow.nodes.law_depth[first + i] = depth_at_margin(depth + i, up, flow.nodes.before[first + i]);
+                        flow.nodes.law_depth[first + i] =
+                            depth_at_margin(depth + i, up, flow.nodes.before[first + i], flow.gravity);
                 }
                 any |= flag;
                 if (a[2] & bit) flag |= kWideX;
