@@ -15,7 +15,7 @@ struct sigaction action_of(int signal) {
     struct sigaction action {};
     action.sa_handler = note_signal;
     sigemptyset(&action.sa_mask);
-    // The default action comes back after the first signal: whoever presses Ctrl-C twice wants out now.
+    // The default action comes back after the first signal: a second Ctrl-C ends the program at once.
     action.sa_flags = SA_RESTART | (signal == SIGPIPE ? 0 : static_cast<int>(SA_RESETHAND));
     return action;
 }

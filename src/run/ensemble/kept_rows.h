@@ -1,5 +1,5 @@
 #pragma once
-// Rows of runs that outlive the program: whatever kills it, a file of them is whole, and says what they belong to.
+// Rows of runs that outlive the program. However it ends, a file of them is whole, and says what they belong to.
 #include <cstdint>
 #include <filesystem>
 #include <functional>
