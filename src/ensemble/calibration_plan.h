@@ -1,5 +1,5 @@
 #pragma once
-// What is to be learnt from surveyed events: which keys vary, and how near to a survey a run should come.
+// What is to be learnt from surveyed events: which keys vary, how near to a survey runs should come.
 #include "ensemble/evidence.h"
 #include "ensemble/plan.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a run of an ensemble keeps of the gauges of its case.
+// What an ensemble stores of a run at the gauges of its case.
 #include <optional>
 #include <vector>
 
