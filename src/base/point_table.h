@@ -39,8 +39,8 @@ void require_finite(const PointTable& table);
 /// same bits. Throws UserError when the file cannot be written, InternalError as above.
 void write_points_csv(const std::filesystem::path& file, const PointTable& table);
 
-/// One JSON object: format, count, the constants, crs_wkt, the texts, units (name: unit), id, and an array per column,
-/// of arrays where it has several components. Numbers read back to the same bits. Throws as above.
+/// One JSON object: format, count, the constants, crs_wkt, the texts, units (name: unit), id, and an array per column.
+/// An array has arrays where it has several components. Numbers read back to the same bits. Throws as above.
 void write_points_json(const std::filesystem::path& file, const PointTable& table);
 
 }  // namespace frana
