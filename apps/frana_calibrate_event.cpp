@@ -26,7 +26,7 @@ double perimeter_of(const Rings& rings) {
     return sum;
 }
 
-/// A raster without values where the run begins and where the survey is: both are needed of what else was surveyed.
+/// A raster without values where the run begins and where the survey is. Both are needed of what else was surveyed.
 Raster around(const EnsembleBase& base) {
     std::vector<Vec2> points;
     for (const auto& ring : *base.survey) points.insert(points.end(), ring.begin(), ring.end());

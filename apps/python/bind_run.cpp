@@ -15,7 +15,7 @@ namespace {
 
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// In a process that was forked from the one which started a run, its thread is not there: the run is left alone.
+/// In a process that was forked from the one which started a run, its thread is not there. The run is left alone.
 struct EndSession {
     pid_t process = ::getpid();
     void operator()(Session* session) const {
@@ -158,7 +158,7 @@ public:
         if (!session_ || ::getpid() != process_ || over()) return;
         session_->end();
         wait_out();
-        if (!busy_) tell_failure();  // else whoever steps it tells
+        if (!busy_) tell_failure();  // else the thread that steps it does
     }
     bool over() const { return session_->state() == Session::State::over; }
     Session& session() const {
