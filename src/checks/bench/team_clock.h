@@ -11,9 +11,8 @@ struct Lap {
     double cpu = 0.0;  ///< of the thread of the team that computed most: what the team takes when nobody else computes
 };
 
-/// From its construction on, teams have `threads` threads. On a machine with other work a thread waits for its turn,
-/// which wall time counts and CPU time does not; waiting for one's own team is spent spinning and counts in both,
-/// nearly.
+/// From its construction on, teams have `threads` threads. On a machine with other work a thread waits for its turn.
+/// Wall time counts that, CPU time does not. Waiting for one's own team is spent spinning and counts in both, nearly.
 class TeamClock {
 public:
     explicit TeamClock(int threads);

@@ -23,7 +23,7 @@ Scene strip(double cell, double x0, double x1, double slope, double mu) {
 }
 
 /// Shallow form, tan 0.4 / mu 0.2, 1 m behind the dam at x = 0 to the wall at x = -50 m; 6 s. The void that opens at
-/// that wall is felt up to -50 + c t + a t^2/2 = 4.1 m; the front stands at 72.9 m.
+/// that wall is felt up to -50 + c t + a t^2/2 = 4.1 m. The front stands at 72.9 m.
 Measurement run_coulomb_slope(const Setup& setup) {
     constexpr double kSlope = 0.4, kMu = 0.2, kEnd = 6.0;
     const SlopeDam dam{1.0, 9.81, 9.81 * (kSlope - kMu)};
