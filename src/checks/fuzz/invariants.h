@@ -59,8 +59,7 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   Where the surface slopes against the bed the drive is the plain gradient (grid_update_bed.h). An example is the
 ///   flank of a heap that runs uphill. It conserves the energy of the horizontal velocity. What the vertical one adds,
 ///   B^2 / (1 + B^2) of K, is the model's own. That is so for what is there and for what left with it. That takes a
-///   depth that changes by
-///   more than the bed. So B there is at most the largest depth over a cell.
+///   depth that changes by more than the bed. So B there is at most the largest depth over a cell.
 ///   It does not hold for the paper preset, whose explicit forces act on nodes of vanishing mass. Structured columns
 ///   and water bend with no Hessian: their energy is checked on ground that does not bend.
 ///   Columns that go under a lake lift the water over them. A shore within a cell does not take that back, nor do cells
@@ -92,8 +91,7 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 /// - head (3D points): z + V^2 / 2g of each point is no higher than the highest surface of the start and what follows.
 ///   First comes the head of a front, (1 + kConvergence)^2 (v0 + 2 sqrt(g h))^2 / 2g with v0 and h of `speed`. Then
 ///   comes `kEnergyShare` of what the point has fallen. A cell of the 3D grid is added, within which the ground's
-///   height is
-///   not told apart.
+///   height is not told apart.
 ///   Where it is more, the front's head is (kBlow v0 + 2 sqrt(g h))^2 / 2g. Heavy material may come from opposite
 ///   sides. What is squeezed between leaves at up to three times its speed, by the law of elastic blows. Material that
 ///   strikes ground or itself spouts. Seed 2's scene 992 and seed 25112's 149, 370 and 667 do. Points leave at 1.6 to

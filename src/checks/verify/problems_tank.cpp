@@ -9,8 +9,7 @@ namespace frana::verify {
 namespace {
 
 constexpr double kTankGravity = 10.0, kTankDensity = 1000.0;  // [m/s^2], [kg/m^3]
-                                                              // Of a slice. It is so wide that mirror particles in both
-                                                              // of its sides do not meet where material is.
+// Of a slice. It is so wide that mirror particles in both of its sides do not meet where material is.
 constexpr double kTankWidthCells = 3.0;
 
 /// A box of water in its own axes, at rest, with hydrostatic pressure. Sound is ten times as fast as a wave on it.
