@@ -13,8 +13,8 @@
 namespace frana {
 namespace {
 
-/// Cells a point may have moved since the last sort: tiles of one colour stand 16 nodes apart and reach 2
-/// nodes and twice the drift.
+/// Cells a point may have moved since the last sort. Tiles of one colour stand 16 nodes apart and reach 2 nodes and
+/// twice the drift.
 constexpr double kDriftLimit = 2.0;
 
 constexpr Index kStepsBetweenSplits = 3;
@@ -184,9 +184,9 @@ void StructuredFlow::learn_ground() {
 
 double StructuredFlow::step_length(double until) const { return status_.step_towards(until, longest_step()); }
 
-/// Sound and flow pass part of a cell. Nothing here bounds the step for grains alone: their earth pressure
-/// grows so fast with the rate of squeezing (earth_pressure.h) that it needs steps below cell^2 / (5 (Kp -
-/// Ka) sqrt(g_z h^3)), or is noisy; the elastic step is mostly near that. Hydrostatic grains do not.
+/// Sound and flow pass part of a cell. Nothing here bounds the step for grains alone. Their earth pressure grows fast
+/// with the rate of squeezing (earth_pressure.h). It needs steps below cell^2 / (5 (Kp - Ka) sqrt(g_z h^3)), or is
+/// noisy. The elastic step is mostly near that. Hydrostatic grains do not.
 double StructuredFlow::longest_step() const {
     const bool flows = sound_speed_ == 0.0 || (hydrostatic_ && status_.damage >= 1.0);  // all grains, to the last bit
     return flows ? flow_step(wave_) : cfl_ * body_.grid.cell() / (sound_speed_ + wave_);
