@@ -547,8 +547,8 @@ void BarrierWatch::accumulate_loads(const Mpm3d& flow) {
         if (!loads_.barriers[n].touched) loads_.barriers[n].touched = is_touched(n, flow);
 }
 
-/// Nodes exert force on what is still a cell away, and so slow down what comes fast. So it counts when it is no farther
-/// than half a cell, at the time of its undisturbed arrival. At the latest it counts when half of a point's width is
+/// Nodes exert force on what is still a cell away, and so slow down what comes fast. So a point touches at the time of
+/// its undisturbed arrival, when it is no farther than half a cell. At the latest it touches when half of its width is
 /// left.
 bool BarrierWatch::is_touched(std::size_t n, const Mpm3d& flow) {
     const auto has_impulse = [](const FaceLoad& face) { return !face.impulse.isZero(0.0); };
