@@ -209,7 +209,7 @@ double loose_way(const Polyline& path, const Raster& loose) {
     return way;
 }
 
-/// How far a flow that takes up its bed in proportion to its way grows, on the steepest path over loose material.
+/// Growth of a flow that takes up its bed in proportion to its way, on the steepest path over loose material.
 /// There is a remark where that is more than a hundredfold.
 std::string growth_text(const BuiltScene& built) {
     constexpr double kHundredfold = 100.0;

@@ -1,9 +1,9 @@
 // Made-up ground with the figures of Fois, de Falco, Formaggia (2025), section 4.4.2. The elevation model of
-// the paper, a hill near Lecco, is not public. What it says is used: 750 x 1000 m on 151 x 201 nodes, natural slopes of
-// 60 to 68 degrees. The release is 0.02 Z within an ellipse, 5.8e3 m3. There is flat ground at the foot of the hill,
-// before which the barrier stands. What it does not say is the ground's shape. Here it is a round hill with a terrace,
-// on which the mass stands, and cliffs below it. Where the mass goes, the cliffs are cut by a ramp with banks. So it
-// takes about half a minute to the barrier and comes with about 20 m/s.
+// the paper, a hill near Lecco, is not public. What it says is used. That is 750 x 1000 m on 151 x 201 nodes, natural
+// slopes of 60 to 68 degrees. The release is 0.02 Z within an ellipse, 5.8e3 m3. There is flat ground at the foot of
+// the hill, before which the barrier stands. What it does not say is the ground's shape. Here it is a round hill with a
+// terrace, on which the mass stands, and cliffs below it. Where the mass goes, the cliffs are cut by a ramp with banks.
+// So it takes about half a minute to the barrier and comes with about 20 m/s.
 #include <algorithm>
 #include <cmath>
 

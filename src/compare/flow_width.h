@@ -14,7 +14,7 @@ constexpr double least_cells_across = 6.0;
 /// Median width of the footprint across the flow [m]; NaN when nothing is deeper than `limit` [m]. The footprint is
 /// all nodes that are deeper, their pixels filled. Holes of up to nine nodes have no banks. The middle of the flow runs
 /// between neighbouring nodes whose nearest banks lie in directions more than 120 degrees apart. So ends, corners and
-/// ragged edges are none of it. At each such place the width is the length of the section across: a mean over three
+/// ragged edges are none of it. At each such place the width is the length of the section across, averaged over three
 /// cells along the flow. The median over these places weights the flow's length, not its area. A footprint that is
 /// wider than long is measured along, its narrower way. One without a middle is a cell wide.
 double flow_width(const Raster& depth, double limit);

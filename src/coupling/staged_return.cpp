@@ -30,7 +30,7 @@ void StagedRun::note_departed() {
 }
 
 /// Where a column of a point that has come to `to` stands. It is there, or where it left. A barrier may raise the
-/// ground of columns that the point is not above, or a hole may have a wall. Then it is before them on its own side.
+/// ground of columns that the point is not above. Or a hole may have a wall. Then it is before them on its own side.
 /// Where the window ends near a barrier and columns have no cell there, it is one of the window. They leave that again
 /// in their next step: on the barrier they would gain its height. Not so before a hole. Points do not feel its wall,
 /// and would run down the same cells again and again.

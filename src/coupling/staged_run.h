@@ -1,5 +1,5 @@
 #pragma once
-// A run in stages (Fois, de Falco, Formaggia 2025): columns, and from a time on 3D points in a window of the map. The
+// A run in stages (Fois, de Falco, Formaggia 2025): columns, from a time on 3D points in a map window. The
 // tail that still flows into the window is converted column by column, and what flows out becomes columns. Where the
 // case says so, all are columns again later.
 #include <algorithm>

@@ -1,5 +1,5 @@
 #pragma once
-// A run of solids that hold together (van den Bout et al. 2021), with free water or not, or of water alone. It has
+// A run of solids that hold together (van den Bout et al. 2021), with or without free water, or of water alone. It has
 // one model from the start to the end.
 #include <array>
 #include <optional>

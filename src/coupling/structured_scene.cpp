@@ -55,7 +55,7 @@ private:
         return std::binary_search(holes_.begin(), holes_.end(), j * bed_.geometry.nx + i);
     }
 
-    /// Where there is no ground, as far as columns reach: the mean elevation of the nearest ring of nodes with ground [m].
+    /// Mean elevation of the nearest ring of nodes with ground, where there is none, as far as columns reach [m].
     /// Nodes there carry a share of the columns at the hole, and that share has its height.
     double ground_near_hole(Index i, Index j) const {
         constexpr Index kReach = 4;

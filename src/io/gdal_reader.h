@@ -51,9 +51,8 @@ public:
 
     /// Polygons or, where the file is a raster, the outlines of its pixels above 0. These run along the pixels' edges,
     /// and are then reprojected. Stricter than read_polygons, since a survey in the wrong place would still give
-    /// scores. UserError also when the terrain has a CRS and the file has none, or claims degrees for coordinates that
-    /// are none. So too when nothing of it lies within `extent`. What lies outside stays. Overlapping polygons are
-    /// united.
+    /// scores. UserError also when the terrain has a CRS and the file none, or claims degrees for coordinates that are
+    /// none. So too when nothing of it lies within `extent`. What lies outside stays. Overlapping polygons are united.
     Polygons read_survey(const std::filesystem::path& file, const std::array<double, 4>& extent,
                          const std::string& crs_wkt, std::vector<std::string>& log) const override;
 

@@ -16,8 +16,8 @@ struct PeakBlock {
     std::vector<SparseRasters> peaks;  ///< as many
 };
 
-/// HDF5, compressed. Datasets of each sample are sample, rows and pixels; of each row first and count; of each pixel
-/// one of each field. Appears whole or not at all. Throws UserError.
+/// HDF5, compressed. Each sample has sample, rows and pixels. Each row has first and count. Each pixel has one of each
+/// field. Appears whole or not at all. Throws UserError.
 void write_peaks(const std::filesystem::path& file, const PeakBlock& block);
 
 /// Only the fields that are `wanted` have values, those of the others stay empty. Throws UserError for a file that is none of

@@ -69,7 +69,7 @@ void give_away_dust(Patches& patches, double dust) {
 }
 
 /// Where the particle of a patch stands: on the lattice point. Where that is no ground of the domain, it stands in the
-/// patch's part within the domain, or in a quarter. NaN when nothing has ground.
+/// patch's part within it, or a quarter. NaN when nothing has ground.
 class Standing {
 public:
     Standing(const Raster& bed, const Lattice& lattice)

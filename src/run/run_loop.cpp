@@ -144,7 +144,7 @@ RunSummary Loop::run() {
     return summary_;
 }
 
-/// One step, and the outputs on the way. Where the simulation knows its step it is shortened for the end only.
+/// One step, and the outputs on the way. Where the simulation has its own step it is shortened for the end only.
 /// Otherwise observing would change what happens.
 void Loop::step_past_outputs() {
     double shown = time(), output_time = 0.0;

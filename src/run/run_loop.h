@@ -67,9 +67,8 @@ using Observers = std::vector<std::unique_ptr<Observer>>;
 /// the step and ends the run as usual. A NumericsError ends it too, and so does a UserError in a step. If the state can
 /// still be shown it is the last frame. The error is stored in the summary, and the caller throws it once the products
 /// are written. Errors of observers (a full disk) pass through. With a `keeper` the state of simulation, observers and
-/// summary is saved whenever that is due. It is also saved once the run is over, before the last frame and end(): a
-/// resumed run shows its own. If the keeper has a state, the run goes on from there and its summary tells of the whole
-/// run.
+/// summary is saved whenever that is due. It is also saved when the run is over, before last frame and end(): a resumed
+/// run shows its own. If the keeper has a state, the run goes on from there and its summary tells of the whole run.
 RunSummary run(Simulation& simulation, const RunPlan& plan, Observers& observers, const Interrupt& interrupt,
                Progress& progress, StateKeeper* keeper = nullptr);
 

@@ -20,7 +20,7 @@ struct GroundBorders {
 /// its mirror node. So a plane stays what it is up to its edges and to nodata.
 Raster smoothed(const Raster& raster, double length);
 
-/// Curvature of the contour at a node, positive where it is hollow towards the valley: for radius R it is 1/R [1/m]. 0
+/// Curvature of the contour at a node, positive where it is hollow towards the valley. For radius R it is 1/R [1/m]. 0
 /// where the ground is level or a neighbour has no elevation.
 double plan_curvature(const Raster& bed, Index i, Index j);
 

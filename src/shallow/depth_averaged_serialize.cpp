@@ -1,7 +1,7 @@
 // The state of a depth-averaged run between two steps, as it is serialized. It holds the points in their order, the
-// tiles they are sorted by, the sums of the run and the peaks. (Points have moved since the sort.) It also holds what
-// the points have deposited on the nodes. A second deposit would add in another order where points have left in
-// between. What else nodes have follows from the deposit.
+// tiles they are sorted by, the run's sums and the peaks. (Points have moved since the sort.) It also holds what the
+// points have deposited on the nodes. A second deposit would add in another order where points have left in between.
+// What else nodes have follows from the deposit.
 #include <fmt/core.h>
 
 #include <algorithm>

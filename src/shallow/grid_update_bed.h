@@ -83,13 +83,13 @@ struct SteepBed {
     /// k * slope has two parts. k B / (1 + B^2) turns the velocity along the bed and does no work. The rest is k added
     /// to the pressure. That works at -k v.grad(h) / (1 + q), of nothing. What takes it back is of second order in the
     /// depth times the bed's bend, and not in the model. From a column of that height down to its foot it gives v^2/2 a
-    /// share 2 |k| high / v^2. So the rest fades where the bed's slope along the path changes by more than a quarter
-    /// within the depth, |k| high > v^2 / 4. It is gone at a half: half of v^2/2 at most. `high`: depth a cell around
-    /// [m]. Where g + k is below 0 the flow would fly. It has no weight there, but it takes the slope of the bed all
-    /// the same. If its velocity along the map stayed it would win energy by falling faster than what flies. Its
-    /// direction stays, and so does a speed along the bed that gravity alone changes. (To turn it with the bed would do
-    /// no work either, but draw a flow that passes a spur uphill.) A climb counts by the smoothed bed. H is its bend,
-    /// and a step in the bed that only the raw bed has may give no speed.
+    /// share 2 |k| high / v^2. So the rest fades where the bed's slope along the path changes by over a quarter within
+    /// the depth: |k| high > v^2 / 4. It is gone at a half: half of v^2/2 at most. `high`: depth a cell around [m].
+    /// Where g + k is below 0 the flow would fly. It has no weight there, but it takes the slope of the bed all the
+    /// same. If its velocity along the map stayed it would win energy by falling faster than what flies. Its direction
+    /// stays, and so does a speed along the bed that gravity alone changes. (To turn it with the bed would do no work
+    /// either, but draw a flow that passes a spur uphill.) A climb counts by the smoothed bed. H is its bend, and a
+    /// step in the bed that only the raw bed has may give no speed.
     Drive<Real> driving(const Drive<Real>& slope, double g, Real high, Real vx, Real vy, Real cosine) const {
         const Real weight = gravity(g, vx, vy);
         const Drive<Real> whole{weight * slope.x, weight * slope.y};

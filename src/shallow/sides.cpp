@@ -49,7 +49,7 @@ void settle_on_walls(Flow& flow, Index p, double x_max, double y_max) {
     set_edges(held, p, rectangle_of(moments));
 }
 
-/// A point that comes to node (i, j) of a wall in a hole goes back over an edge of the node's pixel. It is the nearest
+/// A point at node (i, j) of a wall in a hole goes back over an edge of the node's pixel. It is the nearest
 /// edge beyond which there is no wall. It goes back as far as it came, and has no speed against that edge. The wall's
 /// height alone would not hold the foremost. Returns how far it was set back [cells].
 template <class Real>

@@ -101,7 +101,7 @@ std::uint32_t bits_of(std::uint64_t bytes) {
     return static_cast<std::uint32_t>((bytes & kEachByte) * 0x0102040810204080 >> 56);
 }
 
-/// Which of eight nodes are known before a sweep: wet, and not of the margin or found by an earlier sweep.
+/// Which of eight nodes are known before a sweep. They are wet, and not of the margin or found by an earlier sweep.
 std::uint32_t known_of(std::uint64_t flags, int sweep) {
     const std::uint64_t margin = flags >> 1, odd = flags >> 6, even = flags >> 7;  // sweeps 1 and 3; 2 and 3
     std::uint64_t found = 0;
@@ -286,8 +286,8 @@ bool calm(const Nodes& nodes, Index k, Index up) {
     return true;
 }
 
-/// Of the depth that a filter may take or add. A depth that repeats every two cells and is nowhere negative has at
-/// least a quarter of its peak as mean. Where a filter takes more, it sees no wave but the edge of a film.
+/// Of the depth that a filter may take or add. The mean of a depth that repeats every two cells and is nowhere negative
+/// is at least a quarter of its peak. Where a filter takes more, it sees no wave but the edge of a film.
 constexpr double kMostOfDepth = 0.75;
 
 /// The depth h without its wave, as the bed law sees it.

@@ -100,10 +100,10 @@ struct Vec3x4 {
 /// the surface goes on through it with its bend. Otherwise each step would take that bend from the layer at the
 /// surface. v and v' are those at the distance d; on the surface there is rest. Then the speed is a z + b z^2, b = (v'
 /// d - v) / d^2. At -d it is 2 b d^2 - v, its gradient v' - 4 b d. What bends by more than a third of v over d is no
-/// layer that has settled (kGentle: the square of b d^2 / v). It strikes the surface or is noise, and is turned round
-/// only. At 0.47 and more that is so altogether (kRough). A sheet's bend is d / (2 H - d), a third at half of its depth
-/// H. Nor is it a layer that has settled where the stress does not hold it (`settled`).
-/// `stress` is an impulse, that of a step on the point's volume [J s]; per_mass: 1 over the step and the mass.
+/// settled layer (kGentle: the square of b d^2 / v). It strikes the surface or is noise, and is turned round only. At
+/// 0.47 and more that is so altogether (kRough). A sheet's bend is d / (2 H - d), a third at half of its depth H. Nor
+/// is it a layer that has settled where the stress does not hold it (`settled`). `stress` is an impulse, that of a step
+/// on the point's volume [J s]; per_mass: 1 over the step and the mass.
 [[gnu::always_inline]] inline void bend(const MirrorBatch& batch, const Mat3x4& stress, const Double4& per_mass,
                                         Double4* v, Mat3x4& gradient) {
     constexpr double kGentle = 1.0 / 9.0, kRough = 2.0 / 9.0;

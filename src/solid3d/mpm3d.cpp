@@ -193,9 +193,9 @@ void Mpm3d::list_mirrors(Index n, SurfaceSet near, const Vec3& low, const Vec3& 
     body_.mirror_colour[static_cast<std::size_t>(64 * (apart - 2) + colour)].push_back(n);
 }
 
-/// In a surface that bends mirror particles may stand where its nodes lie farther than mirror particles reach in a
-/// plane. There too the real material has to be told from them. A mirror particle stands up to nine cells from its
-/// point (solid_kernel.cpp).
+/// In a bent surface mirror particles may stand where its nodes lie farther than mirror particles reach in a plane.
+/// There too the real material has to be told from them. A mirror particle stands up to nine cells from its point
+/// (solid_kernel.cpp).
 void Mpm3d::mark_visible_mirrors() {
     SurfaceSet bent = 0;
     for (std::size_t s = 0; s < body_.surfaces.size(); ++s)

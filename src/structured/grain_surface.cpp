@@ -21,7 +21,7 @@ void widen_at_obstacles(StructuredBody& body) {
     for_each_in_reach(body, [&](Index k) { body.flow.nodes.column_mass[k] /= body.ground[k].open; });
 }
 
-/// Behind obstacles the surface goes on as high as next to them: a face is no shore and exerts no tension.
+/// Behind obstacles the surface goes on as high as next to them. A face is no shore and exerts no tension.
 void level_behind_obstacles(StructuredBody& body) {
     Nodes& nodes = body.flow.nodes;
     const Index up = body.grid.stride();

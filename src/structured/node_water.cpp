@@ -38,9 +38,9 @@ Vec2 surface_slope(const StructuredBody& body, Index k) {
     return {along(1), along(body.grid.stride())};
 }
 
-/// Rate at which water speeds up its slip where grains are not spread evenly over the depth [1/s] (van den Bout et al.
-/// 2021, sec. 2.4; its share of mobile water, alpha_u, stands above and below): stable only where drag is stronger
-/// [1/s].
+/// Rate at which water speeds up its slip where grains are not spread evenly over the depth [1/s]. It is stable only
+/// where drag is stronger. (van den Bout et al. 2021, sec. 2.4; its share of mobile water, alpha_u, stands above and
+/// below.)
 double spread_rate(const WaterViscosity& viscosity, const Mixture& mixture, double total) {
     return viscosity.kinematic * viscosity.profile * mixture.grains() / (total * total);
 }

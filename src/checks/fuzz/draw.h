@@ -85,7 +85,7 @@ void draw_release(Dice& dice, Draft& draft, const ReleaseKind& kind);
 void flatten(Draft& draft, double rise);
 /// Ground for material that is not the depth-averaged flow's: as draw_terrain, at most as steep as it draws.
 void draw_ground(Dice& dice, Draft& draft);
-/// What is let go, as it is drawn so far [m], [m/s]: how deep it is, how fast, how fast it can become.
+/// What is let go, as it is drawn so far [m], [m/s]: depth, speed, and the speed that it can reach.
 struct Scales {
     double deepest, volume, speed, wave, gravity;
 };

@@ -62,8 +62,8 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   depth that changes by more than the bed. So B there is at most the largest depth over a cell.
 ///   It does not hold for the paper preset, whose explicit forces act on nodes of vanishing mass. Structured columns
 ///   and water bend with no Hessian: their energy is checked on ground that does not bend.
-///   Columns that go under a lake lift the water over them. A shore within a cell does not take that back, nor do cells
-///   of water that reach half a cell behind a wall. They miss up to the displaced weight over the drop of a cell. Where
+///   Columns that go under a lake lift the water over them. A shore within a cell, or cells of water that reach half a
+///   cell behind a wall, do not take that back. They miss up to the displaced weight over the drop of a cell. Where
 ///   only a share of the pores' pressure bears columns (water.pore_pressure), they miss its rest over the whole fall.
 ///   3D points have an energy law anywhere, and none of the exceptions above. A run with columns as well has those of
 ///   columns.
@@ -96,7 +96,7 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   sides. What is squeezed between leaves at up to three times its speed, by the law of elastic blows. Material that
 ///   strikes ground or itself spouts. Seed 2's scene 992 and seed 25112's 149, 370 and 667 do. Points leave at 1.6 to
 ///   2.4 v0, in one of them at 3.1 v0 in shorter steps. All of it loses energy meanwhile.
-///   In runs that have columns as well, points begin up a slope from their column, by up to a cell of the terrain. They
+///   In runs that have columns as well, points may begin up a slope from their column, by a terrain cell. They
 ///   have the speed that its path gave it. So the drop of a cell, and the `stretch` of `speed`, come on top.
 /// - rest (claimed scenes): a pile's positions and velocities are those of the start, bit for bit. A lake is level as
 ///   far as points at these places can make it so (MassFit::level_error). Where the fit met the level, it moves no

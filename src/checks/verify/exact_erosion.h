@@ -1,5 +1,5 @@
 #pragma once
-// Flows that take up their bed: slabs on a plane, the trench behind a block, a cap that spreads and grows. Lengths run along
+// Flows that take up their bed: slabs on a plane, the trench behind a block, a growing cap. Lengths run along
 // the slope and normal to it. kappa is the share of the flow's velocity that what is taken brings along.
 #include "checks/verify/problem.h"
 

@@ -8,8 +8,8 @@
 namespace frana::verify {
 
 /// Shallow water on flat ground in one coordinate r from a wall or an axis at r = 0. The finite-volume scheme is of
-/// second order: limited linear states of depth and velocity, fluxes of Harten, Lax and van Leer (1983), two-stage
-/// Runge-Kutta. With an axis: d(r h) + d(r h u) = 0, d(r h u) + d(r (h u^2 + g h^2 / 2)) = g h^2 / 2.
+/// second order. It has limited linear states of depth and velocity, fluxes of Harten, Lax and van Leer (1983), and
+/// two-stage Runge-Kutta. With an axis: d(r h) + d(r h u) = 0, d(r h u) + d(r (h u^2 + g h^2 / 2)) = g h^2 / 2.
 class LineWater {
 public:
     enum class Symmetry { plane, axis };

@@ -167,8 +167,8 @@ Measurement run_bar_impact(const Setup& setup) {
     return m;
 }
 
-/// A block of elastic material that slides down a plane which is turned in the grid. It rocks on its elastic
-/// base, and more normal force brakes it more: v_along + mu v_across = v_0 + g (sin - mu cos) t at any time.
+/// A block of elastic material that slides down a plane which is turned in the grid. It rocks on its elastic base, and
+/// more normal force brakes it more. v_along + mu v_across = v_0 + g (sin - mu cos) t at any time.
 struct Slide3 {
     double speed_error;     ///< of v_along + mu v_across, over what is gained
     double weight_error;    ///< of the plane's normal force, over the weight

@@ -1,4 +1,4 @@
-// The conversion from columns to 3D points, on the field of Fois, de Falco, Formaggia (2025), section 4.3: h = 10 -
+// The conversion from columns to 3D points. The field is that of Fois, de Falco, Formaggia (2025), section 4.3: h = 10 -
 // sin(2x) cos(y), u = 2.001 m/s on [0, 5]^2.
 #include <algorithm>
 #include <chrono>

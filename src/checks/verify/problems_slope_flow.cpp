@@ -90,7 +90,7 @@ Measurement run_slope_dam(const Setup& setup) {
     return m;
 }
 
-/// Shallow form, tan 0.6 / mu 0.3: the cap moves 147 m in 10 s and grows from 40 m to 132 m.
+/// Shallow form, tan 0.6 / mu 0.3. The cap moves 147 m in 10 s and grows from 40 m to 132 m.
 const SlidingCap kCap{2.0, 20.0, 9.81, 9.81 * (0.6 - 0.3)};
 
 Measurement run_sliding_cap(const Setup& setup) {

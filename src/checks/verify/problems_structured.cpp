@@ -57,7 +57,7 @@ Measurement run_spin(const Setup& setup) {
     return m;
 }
 
-/// A bar 1 m long between smooth walls strikes a wall at x = 0, at a thousandth of its wave speed c. The force rho c v
+/// Between smooth walls a bar 1 m long strikes a wall at x = 0, at c / 1000, c its wave speed. The force rho c v
 /// acts on it over 2 L / c, and it leaves as fast as it came.
 Measurement run_structured_bar(const Setup& setup) {
     const double cell = 1.0 / static_cast<double>(setup.cells), side = 4.0 * cell;

@@ -1,5 +1,5 @@
 #pragma once
-// A dam break on a steep plane by the equations of columns on steep terrain, not linearised in the depth gradient.
+// A dam break on a steep plane by the equations of steep terrain, not linearised in the depth gradient.
 #include <vector>
 
 #include "checks/verify/problem.h"

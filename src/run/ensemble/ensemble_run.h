@@ -47,8 +47,8 @@ public:
     /// The maps of all runs in the folder. Throws UserError where no run has an answer.
     EnsembleSummary join(std::optional<double> wall_seconds) const;
 
-    /// Share of the runs in the folder with more than `threshold` of a stored field [1], as in the map of
-    /// ensemble.exceed. Throws UserError.
+    /// Share of the folder's runs with more than `threshold` of a stored field [1], as in the map of ensemble.exceed.
+    /// Throws UserError.
     Raster probability(const std::string& field, double threshold) const;
 
 private:

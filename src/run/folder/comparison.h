@@ -28,8 +28,8 @@ Survey read_survey_files(const SurveyFiles& files, const Raster& like, std::vect
 std::string comparison_json(const Comparison& comparison);
 
 /// compare.json in `run_dir` and, where changes of the bed were compared along a path, compare_bed_change.csv. For each
-/// step of the path that has distance, middle, volumes, and what all steps so far gave less what they took. UserError
-/// when they cannot be written.
+/// step of the path that has distance, middle and volumes. Also what all steps so far gave less what they took.
+/// UserError when they cannot be written.
 void write_scores(const std::filesystem::path& run_dir, const std::filesystem::path& json,
                   const Comparison& comparison);
 

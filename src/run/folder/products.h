@@ -43,8 +43,7 @@ private:
 /// - final_depth, final_velocity_x, final_velocity_y, final_damage of what can break, final_water_depth of the water
 ///   with it;
 /// - eroded_depth, deposited_depth and bed_change of a bed that changes.
-/// Negative arrival times and all nodes without
-///   terrain become nodata.
+/// Negative arrival times and all nodes without terrain become nodata.
 std::vector<ProductRaster> product_rasters(const Frame& last, const std::string& crs_wkt);
 
 /// Adds final_elevation to rasters with a bed_change: the bed of the start, and where it follows, that change. The solver's

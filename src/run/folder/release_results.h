@@ -31,7 +31,7 @@ std::vector<ReleaseSource> release_sources(const CaseFile& file);
 ShapeLayer release_layer(const std::vector<ReleaseSource>& sources, const std::vector<LateEntry>& late, double at_start,
                          const std::string& crs_wkt);
 
-/// 1 on pixels of `like` whose middle lies in the outline or on the mask of a late release that entered. Else 0.
+/// 1 on pixels of `like` whose middle lies in the outline or mask of a late release that entered. Else 0.
 /// Nothing where none did. Those with neither are not known. UserError when a file cannot be read.
 std::optional<Raster> released_later_on(const std::vector<ReleaseSource>& sources, const std::vector<LateEntry>& late,
                                         const Raster& like);
