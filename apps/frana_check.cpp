@@ -108,7 +108,7 @@ struct Forecast {
     double particle_seconds = 0.0;  ///< sum of the times that particles are in the flow, or cells may be [s]
 };
 
-/// What a forecast sees of all material, at once or later.
+/// All material for a forecast, at once or later.
 struct Start {
     double lowest = INFINITY, top = -INFINITY;  ///< of the terrain, of the material's surface [m]
     double speed = 0.0, depth = 0.0;            ///< largest [m/s], [m]

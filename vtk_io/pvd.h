@@ -22,7 +22,7 @@ void write_pvd(const std::filesystem::path& pvd, const std::vector<PvdEntry>& en
 std::vector<PvdEntry> read_pvd(const std::filesystem::path& pvd);
 
 /// A series that grows while a run goes on. Each new file is listed at once, and a number given again replaces its
-/// line. Whoever opens the .pvd meanwhile finds only files that exist.
+/// line. A .pvd that is opened meanwhile names only files that exist.
 class PvdSeries {
 public:
     /// `pvd` stands in the run directory; files are `stem`/`stem`_NNNNNN`extension` next to it.

@@ -99,7 +99,7 @@ void hide_nodes(vtkImageData* image, const std::vector<std::uint8_t>& outside) {
 
 /// Throws std::bad_alloc when so many bytes are not to be had.
 static void require_memory(std::size_t bytes) {
-    char* volatile room = new char[bytes];  // volatile: or the compiler sees that nobody needs it
+    char* volatile room = new char[bytes];  // volatile: or the compiler drops it as unused
     delete[] room;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // Points for other programs: named columns with units, and the text formats. HDF5 and VTK live in io/hdf5_points.h and
-// vtk_io/points_vtp.h. Whoever has points to export makes a table of them; what the formats have in common is here.
+// vtk_io/points_vtp.h. A table holds points to export; what the formats have in common is here.
 #include <filesystem>
 #include <string>
 #include <utility>

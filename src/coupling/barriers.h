@@ -1,5 +1,5 @@
 #pragma once
-// Barriers as both models see them.
+// Barriers in both models.
 #include <algorithm>
 #include <map>
 #include <string>
@@ -178,7 +178,7 @@ private:
     std::vector<double> due_;  ///< of each: when the first point comes to it, at the speed it came with [s]
     BarrierLoads loads_;
     RunUp reached_;          ///< at one barrier at a time
-    double density_, ramp_;  ///< ramp: of a barrier as columns see it [m]
+    double density_, ramp_;  ///< ramp: of a barrier for columns [m]
     double placed_ = 0.0;    ///< of points that came to be on top of barriers [m3]
 };
 

@@ -141,7 +141,7 @@ void StagedRun::begin_watch() {
     watch_->add(none, columns_watch_->loads());
 }
 
-/// The ground comes first; it brakes by the bed law, where that hangs on speed.
+/// The ground comes first; it brakes by the bed law, where that depends on speed.
 SolidScene StagedRun::space_of_stage() const {
     SolidScene space = solid_scene(scene_, start_);
     if (scene_.solid->whole_bed_law && !start_.stuck)

@@ -32,7 +32,7 @@ struct CalibrationPlan {
     SurveyErrors errors;                                    ///< likewise
     std::vector<Vary> vary;
     std::vector<SurveyedEvent> events;
-    std::optional<EnsemblePlan> predict;  ///< another event, whose maps are wanted: its case and which maps
+    std::optional<EnsemblePlan> predict;  ///< another event to map: its case and which maps
 };
 
 /// Reads and checks `file`. Throws one UserError with every problem found.

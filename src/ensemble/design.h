@@ -1,5 +1,5 @@
 #pragma once
-// Where in the unit cube the samples of an ensemble lie. Sample i hangs on the seed and on i alone; with "lhs" also on
+// Where in the unit cube the samples of an ensemble lie. Sample i depends on the seed and on i alone; with "lhs" also on
 // how many there are. So any part of an ensemble can be run anywhere.
 #include <cstdint>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-// Which of the keys an outcome hangs on.
+// Which of the keys an outcome depends on.
 #include <optional>
 #include <vector>
 

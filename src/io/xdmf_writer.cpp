@@ -116,8 +116,8 @@ private:
                                               collection_text("particles", particles_) + "  </Domain>\n</Xdmf>\n");
     }
 
-    /// HDF5 writes its tables over and over in the same places. A run that is killed there leaves a file that nobody
-    /// can open. So they are stored apart.
+    /// HDF5 writes its tables over and over in the same places. A run that is killed there leaves a file that cannot be
+    /// opened. So they are stored apart.
     void serialize_file(Archive& archive) {
         const std::filesystem::path file = run_dir_ / "run.h5";
         std::vector<Index> offsets, bytes;

@@ -1,5 +1,5 @@
 #pragma once
-// One time step of a speed that friction brakes: what a bed law sees, and solutions that several laws share.
+// One time step of a speed that friction brakes: the state for a bed law, and solutions that several laws share.
 // Numbers of equations: src/shallow/THEORY.md, section 9.
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace frana {
 
-/// What a bed law sees of a node. Real: double, or Double4 for four nodes at once.
+/// A node's state for a bed law. Real: double, or Double4 for four nodes at once.
 template <class Real>
 struct BedStateOf {
     Real normal_gravity;  ///< N / kappa: normal force per mass, over |V|/|v| [m/s^2]

@@ -22,7 +22,7 @@
 
 namespace frana {
 
-/// What a law learns of a step: L_kl = dv_k/dx_l at the point [1/s], and the step [s].
+/// A law's input of a step: L_kl = dv_k/dx_l at the point [1/s], and the step [s].
 template <class Real>
 struct DeformationOf {
     Square<Real> gradient;

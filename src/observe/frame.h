@@ -1,5 +1,5 @@
 #pragma once
-// How the outside sees a state: named columns with units. Writers and figures use frames, never the solver.
+// A state for the outside: named columns with units. Writers and figures use frames, never the solver.
 #include <array>
 #include <optional>
 #include <string>

@@ -64,7 +64,7 @@ public:
     virtual ~Observer() = default;
     virtual std::string name() const = 0;              ///< for the timing table
     virtual void step(const Status&, const Probe&) {}  ///< after every step (and once at the start)
-    /// Asked after every step that ends between outputs: is a frame wanted now? Then observe_between() gets it.
+    /// Called after every step that ends between outputs: whether observe_between() gets a frame now.
     virtual bool wants_frame(const Status&) { return false; }
     virtual void observe_between(const Frame&) {}
     virtual void observe(const Frame&) {}  ///< at the start, at every output time and at the end

@@ -36,7 +36,7 @@ public:
     RestRule(double cell, double fraction) : cell_(cell), fraction_(fraction) {}
 
     /// At the start and after every step. Reads the material only when its mean speed is low, and then at most 140
-    /// times while the time doubles. The answer depends on the steps alone, not on when a frame is wanted.
+    /// times while the time doubles. The answer depends on the steps alone, not on the times of frames.
     void note(const Simulation& simulation);
     bool at_rest() const { return nothing_moves_ || rests_; }
     /// What is slower does not count as moving, at a time [s] of the run [m/s].

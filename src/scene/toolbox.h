@@ -14,18 +14,18 @@
 
 namespace frana {
 
-/// What part of an elevation model is wanted, and how fine.
+/// What part of an elevation model to read, and how fine.
 struct DemRequest {
     std::optional<std::array<double, 4>> window;  ///< xmin, ymin, xmax, ymax in map coordinates [m]
     std::optional<double> cell;                   ///< node distance [m]; nothing: the pixel of the file
-    /// Told the grid before any of it is read (a raster without values): the nodes that are wanted. May throw to refuse it.
+    /// Told the grid before any of it is read (a raster without values): the nodes to read. May throw to refuse it.
     std::function<NodeBox(const Raster& whole)> choose = {};
 };
 
 /// How a raster lies to a part of the map.
 struct RasterPlace {
     bool touches = true;      ///< otherwise read_raster and read_onto refuse it
-    bool needs_warp = false;  ///< its CRS is another one: pixels then hang on the part that is read
+    bool needs_warp = false;  ///< its CRS is another one: pixels then depend on the part that is read
 };
 
 /// Polygons with a number each.

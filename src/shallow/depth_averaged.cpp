@@ -382,7 +382,7 @@ Index DepthAveraged::particle_bytes() const {
 namespace {
 
 /// Debris flows grow tenfold on their way, few of them fiftyfold. A flow that grows more takes all that it reaches, and
-/// what it reaches hangs on the cell.
+/// what it reaches depends on the cell.
 std::string remark_on_growth(const Status& now) {
     constexpr double kMost = 100.0;
     const double given = now.mass + now.mass_left - (now.bed.eroded - now.bed.deposited);

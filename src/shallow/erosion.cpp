@@ -294,7 +294,7 @@ void Erosion::find_demand(Flow& flow, double dt) {
     fold(flow, demand_);
 }
 
-/// What a law sees below four points besides their ground: how much was taken, and what is left. kFresh: material may have
+/// A law's input below four points besides their ground: how much was taken, and what is left. kFresh: material may have
 /// been left behind, that a law has not taken yet.
 template <class Law, bool kFresh>
 void Erosion::see_layer(const MeansOfFour& means, Double4 cosine, erosion::StateOf<Double4>& state) const {
@@ -312,7 +312,7 @@ namespace {
 template <class Law>
 Double4 strengths(const Law& law, const BedStateOf<Double4>& bed, Double4 speed, const erosion::StateOf<Double4>& s) {
     constexpr double kCreep = 0.01;     // [m/s]; what of the friction grows with the speed is nothing yet
-    constexpr double kRounding = 1e-6;  // where friction does not hang on the speed, nothing is left above it
+    constexpr double kRounding = 1e-6;  // where friction does not depend on the speed, nothing is left above it
     constexpr double kThinnest = 0.01;  // of the flow, from which on a deposit bears all
     const Double4 one = all(1.0), held = decelerations(law, bed, min(speed, all(kCreep)));
     const Double4 covers = min(s.lies / (kThinnest * s.thickness), one);

@@ -178,7 +178,7 @@ private:
     LazyArray<NodeGroups> in_reach_;     ///< the same by tile, of `nodes_`
     LazyArray<double> tile_energy_;      ///< [J]
     LazyArray<double> rows_;             ///< scratch of smooth_into_path; zero outside of it [m]
-    bool scarce_ = false;                ///< some node has less than is wanted of it
+    bool scarce_ = false;                ///< some node has less than is demanded of it
     Array wanted_;                       ///< of points; in the end what they get [kg]
     Array missed_;                       ///< of it, for their poorest nodes' sake; when something is scarce [kg]
     Array speed_;                        ///< along the bed [m/s]

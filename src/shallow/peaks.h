@@ -3,7 +3,7 @@
 
 namespace frana {
 
-/// What every node ever saw, updated after each step on nodes near material only.
+/// Peaks of every node, updated after each step on nodes near material only.
 struct Peaks {
     LazyArray<double> depth;     ///< [m]
     LazyArray<double> speed;     ///< along the smoothed bed, where deeper than a tenth of the footprint depth [m/s]

@@ -200,7 +200,7 @@ bool extrapolate(const Flow& flow, Index k, Index i, Index j, const KnownRows& k
     const double level = nodes.level[k];
     if (value >= level)
         value = level;
-    else  // a heap stays seen
+    else  // a heap stays visible
         value = std::max(value, level - emerging(flow, k, value) - (value - flow.bed.z_min[k]));
     return true;
 }
@@ -287,10 +287,10 @@ bool calm(const Nodes& nodes, Index k, Index up) {
 }
 
 /// Of the depth that a filter may take or add. The mean of a depth that repeats every two cells and is nowhere negative
-/// is at least a quarter of its peak. Where a filter takes more, it sees no wave but the edge of a film.
+/// is at least a quarter of its peak. Where a filter takes more, there is no wave but the edge of a film.
 constexpr double kMostOfDepth = 0.75;
 
-/// The depth h without its wave, as the bed law sees it.
+/// The depth h without its wave, for the bed law.
 template <class Real>
 Real without_wave(Real h, Real wave) {
     return h - min(max(wave, -kMostOfDepth * h), kMostOfDepth * h);

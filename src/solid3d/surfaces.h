@@ -106,7 +106,7 @@ struct MirrorParticle {
         }
         return gradient;
     }
-    /// Places x with normal . x < least do not see it.
+    /// It has no effect at places x with normal . x < least.
     struct Cut {
         double normal[3];
         double least;  ///< [m]

@@ -149,7 +149,7 @@ void StructuredFlow::take_tiles() {
     left_ = body_.active.work;
     lists_.list_tiles(body_.grid, body_.active);
     left_.reserve(body_.active.work.capacity());  // grows with the list, not a sort later
-    for (const Index tile : left_) {              // what nobody clears any more must not be seen when columns come back
+    for (const Index tile : left_) {              // what is not cleared any more must not show when columns return
         if (body_.active.in_work[static_cast<std::size_t>(tile)]) continue;
         const Index first = body_.grid.at(body_.grid.tile_i(tile), body_.grid.tile_j(tile));
         for (Index j = 0; j < kTile; ++j) {

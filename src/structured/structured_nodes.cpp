@@ -35,7 +35,7 @@ template <class Real>
 struct DrivenOf {
     Real mass, across, depth;
     FlatOf<Real> before, driven;
-    Real law_depth;         ///< that friction sees: without its 2-cell wave where the surface has none either [m]
+    Real law_depth;         ///< for friction: without its 2-cell wave where the surface has none either [m]
     FlatOf<Real> beyond{};  ///< of what drove it, by earth pressure that is not hydrostatic [m/s]
 };
 

@@ -17,7 +17,7 @@ struct SharpEdge {
     std::array<bool, 2> bent;    ///< at its start and its end: whether an edge that stands in begins there
 };
 
-/// A face adjacent to sharp edges as a place sees it.
+/// A face adjacent to sharp edges, as it is for a place.
 struct EdgeFace {
     int face;
     double distance;  ///< of the place from the face's plane, negative behind it [m]

@@ -37,9 +37,9 @@ struct FaceFlux {
                          ///< that stands there after reconstruction, on either side
 };
 
-/// The flux between two sides under gravity g [m/s^2]. Water sees the higher ground of both sides. What stands level
-/// does not flow, to the last bit. A dry side higher than the water is a wall. Speeds of the waves are Davis's, next to
-/// dry ground those of a dam break.
+/// The flux between two sides under gravity g [m/s^2]. The ground of the face is the higher one of both sides. What
+/// stands level does not flow, to the last bit. A dry side higher than the water is a wall. Speeds of the waves are
+/// Davis's, next to dry ground those of a dam break.
 template <class Real>
 [[gnu::always_inline]] inline FaceFlux<Real> face_flux(const FaceSide<Real>& l, const FaceSide<Real>& r, Real g) {
     const Real none = {};

@@ -175,7 +175,7 @@ GradientStress gradient_stress(const WaterBody& body, const Stage& s, const Visc
 
 /// Viscous stress through a face over density: h nu (grad u + grad u^T)
 /// (Pudasaini 2012, averaged over the depth). h is the harmonic mean of both cells', which is none next to dry ground.
-/// Whoever stands at a wall slides along it. Returns the energy lost in a time of cell^2, of those faces that belong to
+/// Water at a wall slides along it. Returns the energy lost in a time of cell^2, of those faces that belong to
 /// the tile. They are the low ones of its cells. At the side of the grid it is half of what its mirror would have.
 double add_viscous(const WaterBody& body, const Stage& s, const ViscousFace& of, Index k, WaterFaces& faces) {
     const Index back = k - of.step, aside = of.step == 1 ? kRow : 1;
@@ -342,7 +342,7 @@ Vec2 velocity_before(const WaterBody& body, Index k) {
     return h > body.film ? Vec2(Vec2(body.now.qx[k], body.now.qy[k]) / h) : Vec2(0, 0);
 }
 
-/// What a bed law sees of a cell that flows in a direction at a speed, on the map [m/s].
+/// A bed law's input of a cell that flows in a direction at a speed, on the map [m/s].
 BedState seen_by_law(const WaterBody& body, Index k, double h, const Vec2& direction, double speed) {
     const double cosine = body.steep ? std::sqrt(body.normal_gravity[k] / body.gravity) : 1.0;
     const double along = body.steep ? direction.dot(bed_slope(body, k)) : 0.0, kappa = std::sqrt(1.0 + along * along);

@@ -25,7 +25,7 @@ Phases between(const Phases& before, const Phases& after) {
     return spent;
 }
 
-/// The plane's solver, as a meter sees it.
+/// The plane's solver, for the measurement.
 class Plane {
 public:
     explicit Plane(const Scene& scene) : simulation_(scene) { simulation_.count_cpu_time(); }

@@ -8,7 +8,7 @@ namespace frana::bench {
 /// A span of time [s].
 struct Lap {
     double wall = 0.0;
-    double cpu = 0.0;  ///< of the thread of the team that computed most: what the team takes when nobody else computes
+    double cpu = 0.0;  ///< of the thread of the team that computed most: what the team takes without other work
 };
 
 /// From its construction on, teams have `threads` threads. On a machine with other work a thread waits for its turn.

@@ -20,9 +20,9 @@ struct Facts {
     /// its speed along the bed. The factor is `stretch` = sqrt(1 + B^2) between level and steepest.
     bool energy_law = true;
     double stretch = 1.0;
-    double release_depth = 0.0;   ///< largest of the release; nodes see it averaged over a cell and more [m]
+    double release_depth = 0.0;   ///< largest of the release; nodes have it averaged over a cell and more [m]
     double release_energy = 0.0;  ///< that its depth alone could set free [J]
-    /// Of release_energy, what the nodes do not see at the start, because they average depths over a cell and more [J].
+    /// Of release_energy, what the nodes do not have at the start, as they average depths over a cell and more [J].
     double hidden_energy = 0.0;
     double loose = 0.0;                                                ///< deepest that an erodible bed may sink [m]
     double inflow_speed = 0.0;                                         ///< fastest that comes in later [m/s]

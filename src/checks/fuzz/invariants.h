@@ -44,7 +44,7 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   Truncation errs by a share of what is there, most at steps of the depth that no grid resolves. What is unstable
 ///   grows by a factor a step and passes any share.
 ///   The start is that of the release. On nodes, which average its depth, a column of one pixel has a fraction of its
-///   energy. The nodes see more or less of it as its points move and split.
+///   energy. The nodes have more or less of it as its points move and split.
 ///   Linear shapes have this bound only in scenes claimed to be resolved. Their gradients jump at nodes, so work and
 ///   potential differ by a share that no time step mends. (Seed 77003, scene 1805: 1.04, 1.02 and 1.03e6 J gained at
 ///   a scheme.cfl of 0.28, 0.1 and 0.03. With quadratic and cubic shapes a fifth of that.)

@@ -20,7 +20,7 @@ struct Verdict {
 /// Stops a run whose points have multiplied beyond this: it says no more than a shorter one.
 constexpr Index kMostPoints = 60000;
 
-/// Falsifies a state before it is judged, so that tests see that it is.
+/// Falsifies a state before it is judged, so that tests can check the judging.
 using Falsify = std::function<void(Snapshot&)>;
 
 /// Whether a difference between mirror images is round-off that the flow itself made grow, as streams that meet do. Then it

@@ -38,7 +38,7 @@ struct RoundDeposit {
 
 /// On an incline, front down-slope, behind it a vertical wall at x = 0. Let H = h/h_c, h normal to the bed and h_c the
 /// plug's thickness. Then rho g h (sin th - cos th dh/dX) = tau_Y has s = (h_c / tan th) (-H - ln(1 - H)). s is
-/// up-slope from the front along the bed. Here it is read where the map sees it: depth above x of the surface's own
+/// up-slope from the front along the bed. Here it is read as on the map: depth above x of the surface's own
 /// place.
 class InclineDeposit {
 public:

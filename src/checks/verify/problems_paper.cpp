@@ -15,7 +15,7 @@ struct Table1 {
     double l1_h = 0.0, max_h = 0.0, l1_hu = 0.0, max_hu = 0.0;
 };
 
-/// Bed at a place between four nodes, bilinear as the paper's points see it [m].
+/// Bed at a place between four nodes, bilinear as for the paper's points [m].
 double bed_at(const Raster& bed, double x, double y) {
     const GridGeometry& g = bed.geometry;
     const double u = (x - g.x0) / g.cell, v = (y - g.y0) / g.cell;

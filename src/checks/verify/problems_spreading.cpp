@@ -81,7 +81,7 @@ Measurement run_round(const Setup& setup) {
 
 const InclineSpreading kIncline{0.1, 1.0, 20 * kDegree};
 
-/// What the map sees of a thickness h at X along the bed. It is the depth h / cos at x = X cos + h sin, the surface's
+/// What a thickness h at X along the bed is on the map. It is the depth h / cos at x = X cos + h sin, the surface's
 /// place.
 double map_depth(double x, double t) {
     const double c = std::cos(kIncline.slope), s = std::sin(kIncline.slope);

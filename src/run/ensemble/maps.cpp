@@ -102,7 +102,7 @@ private:
                        fmt::format("time by which {:g} of the runs have come; none where fewer come", q));
     }
 
-    /// What the field hangs on at each pixel, where the samples were made for that.
+    /// What the field depends on at each pixel, where the samples were made for that.
     void write_sensitivity(const PeakField& field, const PixelValues& pixels) {
         const bool shares = plan_.method == Method::saltelli;
         if (!shares && plan_.method != Method::morris) return;

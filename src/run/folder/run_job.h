@@ -31,7 +31,7 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const std::files
                     Observers more = {}, std::vector<ProductRaster>* rasters = nullptr);
 
 /// The same run that leaves nothing on the disk. Returns its record, and the rasters that it would leave for a GIS.
-/// Nobody sees its gauges, sections, profiles, in-situ work and barriers' forces, which are files.
+/// Its gauges, sections, profiles, in-situ work and barriers' forces, which are files, are lost.
 RunRecord carry_out_in_memory(const Scene& scene, Simulation& simulation, RunRecord record, const Interrupt& interrupt,
                               Progress& progress, Observers more, std::vector<ProductRaster>& rasters);
 

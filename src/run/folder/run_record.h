@@ -46,7 +46,7 @@ struct RunRecord {
     double end = 0.0;                                                ///< planned [s]
     double whole_end = 0.0;                                          ///< of the case, without --until [s]
     bool netcdf = false;                                             ///< the case has series.nc
-    bool page = false;                                               ///< figures/view.html is wanted
+    bool page = false;                                               ///< figures/view.html is to be made
     bool pictures_cut_off = false;                                   ///< an end was requested while they were drawn
     double footprint_depth = 0.1;                                    ///< [m]
     double footprint_area = 0.0;                                     ///< ever deeper than footprint_depth [m2]
