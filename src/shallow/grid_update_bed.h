@@ -113,7 +113,7 @@ struct SteepBed {
     }
     /// grad(eta) / (1 + q), q = gradZ . grad(eta): a column that accelerates vertically with its bed. Where the surface
     /// slopes against the bed (q < 0) that would grow without bound and make energy of nothing. There it is the plain
-    /// gradient. At q = -1 the column would have no weight. Linear: Linear: c^2 (gradZ + grad h - c^2 gradZ (gradZ .
+    /// gradient. At q = -1 the column would have no weight. Linear: c^2 (gradZ + grad h - c^2 gradZ (gradZ .
     /// grad h)), the first terms of its series in grad h.
     Drive<Real> drive(Real ex, Real ey, Real cosine) const {
         if constexpr (kLinear) {

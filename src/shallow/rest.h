@@ -7,7 +7,8 @@
 // - the points of tiles awake and of tiles that reach a node in motion or deposited anew (`gathers`),
 // - the points of tiles that reach a node which a tile awake reaches (`deposits`): its sums are made again, in their
 //   order,
-// - the nodes near such nodes (`active`). All others stay as they were, and sums over tiles count them as they are.
+// - the nodes near such nodes (`active`).
+// All others stay as they were, and sums over tiles count them as they are.
 #include <vector>
 
 #include "mpm/node_groups.h"

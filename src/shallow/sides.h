@@ -4,7 +4,7 @@
 
 namespace frana {
 
-/// A point so near to a wall lies on it [cells]. It is the round-off of places on grids of up to 65 000 cells.
+/// A point so near to a wall lies on it [cells]. That is the round-off of places on grids of up to 65 000 cells.
 constexpr double kOnWall = 1e-11;
 
 /// Records in `sums` that point p leaves at node k. Returns its kinetic and potential energy [J].
