@@ -116,7 +116,7 @@ void EventSurvey::read_gauges(const SurveyedEvent& event) {
     }
 }
 
-/// Keeps the largest depths and speeds at the gauges, and compares the last frame.
+/// Stores the largest depths and speeds at the gauges, and compares the last frame.
 class EventSurvey::Watch : public Observer {
 public:
     Watch(const EventSurvey& event, EventScores& scores)

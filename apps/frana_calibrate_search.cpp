@@ -104,7 +104,7 @@ const char* reason_of(nlopt::result result) {
     }
 }
 
-/// Keeps the best point, and the first exception, which must not pass through the library.
+/// Stores the best point, and the first exception, which must not pass through the library.
 struct Search {
     Misfits& misfits;
     Optimum& best;

@@ -48,7 +48,7 @@ public:
         return all;
     }
     std::string unit(bool of_grid, const std::string& name) const { return field(held(), of_grid, name).unit; }
-    /// Looks into the simulation's memory.
+    /// Reads the simulation's memory.
     py::array view(bool of_grid, const std::string& name) const {
         const std::shared_ptr<Session> session = held();
         const Field& of = field(session, of_grid, name);

@@ -1,6 +1,6 @@
 #pragma once
 // A run that stands still where somebody wants to observe it, and goes on when told to. It is the program's own run.
-// The time loop works on a thread of its own, and the last of its observers makes it wait. Knows nothing of Python.
+// The time loop works on a thread of its own, and the last of its observers makes it wait. It is without Python.
 #include <sys/types.h>
 
 #include <atomic>
@@ -49,9 +49,9 @@ public:
     void go_to(double until) { go(false, until); }
     /// Goes on to wherever it was going.
     void go_on() { go(to_output_, until_); }
-    /// Asks for a stand after the present step.
+    /// Requests a stand after the present step.
     void pause() { pause_ = true; }
-    /// Asks for an end, without any more stands.
+    /// Requests an end, without any more stands.
     void end();
     /// Material that enters with the next step, while it stands.
     void add(const Seeds& columns) { added_.append(columns, 0, columns.count()); }

@@ -35,7 +35,7 @@ public:
     }
     MovingMass motion(const MotionQuery& query) const override;
     bool may_rest() const override;
-    /// In space: columns first, then points; "model" is 0 and 1. A point's depth, elevation and surface are
+    /// With 3D points: columns first, then points; "model" is 0 and 1. A point's depth, elevation and surface are
     /// those of the map at its place. Between outputs columns and map may be ahead or behind by a step of the
     /// columns.
     Frame frame() override;

@@ -27,7 +27,7 @@ class CheckpointFile {
 public:
     explicit CheckpointFile(const std::filesystem::path& file);
     const CheckpointLabels& labels() const { return labels_; }
-    /// Hands the arrays to `state`.
+    /// Passes the arrays to `state`.
     void load(const std::function<void(Archive&)>& state) const;
 
 private:

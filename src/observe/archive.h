@@ -1,5 +1,5 @@
 #pragma once
-// Saving a state and restoring it. Each owner names its data once, and the same lines save and load. Knows no file
+// Saving a state and restoring it. Each owner names its data once, and the same lines save and load. Has no file
 // format; io/checkpoint_file.h has one.
 #include <cstdint>
 #include <string>

@@ -13,7 +13,7 @@ namespace frana {
 class InsituWork {
 public:
     virtual ~InsituWork() = default;
-    /// Looks at a frame; `number` counts what was made so far (0, 1, 2, ...). Any exception says that it failed.
+    /// Observes a frame; `number` counts what was made so far (0, 1, 2, ...). Any exception says that it failed.
     virtual void sample(const Frame& frame, Index number) = 0;
     virtual void serialize(Archive&) {}  ///< as Observer::serialize
 };

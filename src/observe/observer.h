@@ -58,7 +58,7 @@ public:
     virtual std::vector<double> passed() const { return {}; }
 };
 
-/// Looks on while a case runs; never changes it.
+/// Observes a case while it runs; never changes it.
 class Observer {
 public:
     virtual ~Observer() = default;

@@ -54,7 +54,7 @@ Patch* fullest_neighbour(Patches& patches, Index row, Index column, double dust)
     return fullest;
 }
 
-/// Hands over the volume of hardly covered patches, which are left with area zero. Sums stay the same.
+/// Passes on the volume of hardly covered patches, which are left with area zero. Sums stay the same.
 void give_away_dust(Patches& patches, double dust) {
     for (Index j = 0; j < patches.rows(); ++j)
         for (std::size_t k = patches.start[j]; k < patches.start[j + 1]; ++k) {

@@ -26,7 +26,7 @@ Interrupt::Interrupt(Listen listen) : listening_(listen == Listen::signals) {
     if (!listening_) return;
     signal_arrived = 0;
     for (std::size_t i = 0; i < kSignals.size(); ++i) {
-        // Whoever was told to ignore a hang-up (nohup) goes on ignoring it.
+        // A process told to ignore a hang-up (nohup) goes on ignoring it.
         expect(sigaction(kSignals[i], nullptr, &previous_[i]) == 0, "signal handler");
         if (kSignals[i] == SIGHUP && previous_[i].sa_handler == SIG_IGN) continue;
         const struct sigaction action = action_of(kSignals[i]);

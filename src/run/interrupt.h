@@ -17,7 +17,7 @@ public:
     Interrupt(const Interrupt&) = delete;
     Interrupt& operator=(const Interrupt&) = delete;
 
-    /// Ask for a stop from inside the program.
+    /// Requests a stop from inside the program.
     void request() { requested_ = true; }
     bool requested() const;
     /// Whether it owns the signals.

@@ -10,7 +10,7 @@ class StateKeeper {
 public:
     using State = std::function<void(Archive&)>;
     virtual ~StateKeeper() = default;
-    /// Asked after every step: is it time?
+    /// Called after every step: whether it is time.
     virtual bool due() const = 0;
     /// Saves the state by calling `state`. If that fails, the keeper notes it and the run goes on.
     virtual void save(double time, const State& state) = 0;

@@ -63,7 +63,7 @@ double potential(const Flow& flow, Index k, double mass) {
 
 }  // namespace
 
-/// Beside what may come in nothing sleeps: its nodes have depth that no column tells of.
+/// Next to what may come in nothing sleeps: its nodes have depth that is of no column.
 void DepthAveraged::choose_sleep() { flow_.scheme.sleep = sleeps_ && !(feed_ && !feed_->over()); }
 
 /// Before walls fold the deposit and the surface is made. Its nodes count as in reach.

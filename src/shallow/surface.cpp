@@ -379,8 +379,8 @@ void depth_of_four(Flow& flow, const DepthRequest& request, Index k, Index i, In
 /// THEORY, section 6: the depth that the bed law is given at a margin. Shape functions spread a front over nodes beyond it,
 /// whose depth is a small part of the front's. Were it taken for the flow's own, drag that grows as depth falls would
 /// hold the front too much. The flow behind would pile up on it. So the depth is that of the mass behind, if that is
-/// more. It is of nodes that the node moves away from, by the cosine of twice the angle. Beside and behind a flow its
-/// edge is thin.
+/// more. It is of nodes that the node moves away from, by the cosine of twice the angle. At the sides of a flow and
+/// behind it its edge is thin.
 double depth_at_margin(const double* h, Index up, const Pair& velocity) {
     const double speed2 = velocity.x * velocity.x + velocity.y * velocity.y;
     double sum = *h, square = *h * *h;

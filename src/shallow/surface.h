@@ -35,9 +35,9 @@ NodeSums depth_pass(Flow& flow, const DepthRequest& request);
 void mark_margin(Flow& flow);
 
 /// Wet nodes near a dry one have depth and bed averaged over partly dry supports, which lifts h + z. Their
-/// surface is extrapolated from the inside in three sweeps, never above h + z, never below the bed nearby. It is
-/// lowered by no more than the sum of two. The ground that emerges around the node can have lifted it by the first. The
-/// second is the depth that it is given.
+/// surface is extrapolated from the inside in three sweeps, never above h + z, never below the bed nearby. The most by
+/// which it is lowered is a sum of two. One is the lift by ground that emerges around the node, the other the depth
+/// that it is given.
 void shoreline(Flow& flow);
 
 /// Removes the 2-cell wave from the surface where five wet nodes away from the margin stand in a row. It is exact on

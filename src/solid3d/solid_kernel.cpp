@@ -407,7 +407,7 @@ private:
     }
 
     /// The same for the faces of a barrier. In one so thin that material of both sides shares a node, the sides' mirror
-    /// particles are not told apart. Nothing goes into either side. Beside an edge a node carries some of the pressure
+    /// particles are not told apart. Nothing goes into either side. At an edge a node carries some of the pressure
     /// of faces that it is not before. They require no more than the impulse of their mirror particles' pressure. With
     /// their motion too they would brake what passes the edge.
     [[gnu::noinline]] static int touched_barrier(const SolidBody& body, int s, Index node, const Vec3& x,
@@ -793,7 +793,7 @@ private:
         now.material = (contracted(mean, strain_of(d)) - (has - had)) * rest_volume;
     }
 
-    /// Looks whether points are sound, puts them back before surfaces, and records them.
+    /// Checks that points are finite, puts them back before surfaces, and records them.
     [[gnu::always_inline]] static void finish(SolidBody& body, Index p, int lanes, BatchPoints& now,
                                               const Double4* from, Index tile, BatchSums& lane_sums, SolidSums& sums) {
         const Mask4 there = now.mass > 0.0;  // not beyond `lanes`
@@ -858,8 +858,9 @@ private:
         }
     }
 
-    /// Points stay outside of barriers. If its way from its last place crosses a face, it is put back on that face. It
-    /// lies a hair before it so that it never starts inside. Where there is no such place, it is put back where it was.
+    /// Points stay outside of barriers. If a point's way from its last place crosses a face, it is put back on that
+    /// face. It then lies a hair before the face so that it never starts inside. Where there is no such place, it is
+    /// put back where it was.
     [[gnu::noinline]] static void keep_out(SolidBody& body, Index tile, Index p, const Vec3& from) {
         constexpr int kTurns = 8;
         const SurfaceSet near = body.near_points[static_cast<std::size_t>(tile)] & body.barriers;

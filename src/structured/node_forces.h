@@ -66,7 +66,7 @@ struct GroundOf {
 }
 
 /// What is left of grains' pressures at a node once they are shares (share_out). It is K (1 - f), 1 - f, and 2 cells
-/// times div(K (1 - f)). Beside dry nodes it goes on as it is here.
+/// times div(K (1 - f)). Next to dry nodes it goes on as it is here.
 template <class Real>
 struct GrainsOf {
     Sym2Of<Real> k;

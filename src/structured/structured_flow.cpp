@@ -164,7 +164,7 @@ void StructuredFlow::take_tiles() {
     learn_ground();
 }
 
-/// Asks for the ground and for obstacles at the nodes of tiles that are new to the list.
+/// Finds the ground and obstacles at the nodes of tiles that are new to the list.
 void StructuredFlow::learn_ground() {
     const GridGeometry& g = body_.grid.geometry();
     for (const Index tile : body_.active.work) {

@@ -23,7 +23,7 @@ public:
     /// How fast what moves along the map with (vx, vy) at a node climbs [m/s].
     double climb(Index node, double vx, double vy) const { return vx * path_[node].x + vy * path_[node].y; }
     const NodePeak& peak(Index node) const { return peaks_[node]; }
-    /// Depth of columns on a node [m], also where parts of them reach and none's shape function does. Beside water it
+    /// Depth of columns on a node [m], also where parts of them reach and none's shape function does. With water it
     /// is spread by shape functions, and nothing lies beyond them.
     static double depth_of(const StructuredBody& body, Index k) {
         if (body.moved[k].depth > 0.0 || !body.grains || body.water) return body.moved[k].depth;

@@ -49,7 +49,7 @@ std::vector<std::string> wrapped(const std::string& text, const TextStyle& style
 /// The parts of a polyline inside a rectangle.
 std::vector<std::vector<Vec2>> clipped(const std::vector<Vec2>& line, const Rectangle& window);
 
-/// Keeps what is drawn until it is painted. Painting is cairo's, without a renderer; canvases of several threads paint at
+/// Stores what is drawn until it is painted. Painting is cairo's, without a renderer; canvases of several threads paint at
 /// the same time.
 class Canvas {
 public:

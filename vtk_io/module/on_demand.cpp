@@ -20,7 +20,7 @@ bool tells_of_memory(const std::string& why) {
     return false;
 }
 
-/// Looked for where the program's run path points. It stays open, and global: Python's own modules resolve names in it
+/// It is found where the program's run path points. It stays open, and global: Python's own modules resolve names in it
 /// when a Catalyst script imports them.
 const VtkFunctions& open_module() {
     const char* const way_out =

@@ -22,7 +22,7 @@ CheckpointLabels checkpoint_labels(const Scene& scene, const CaseFile& file);
 /// file.
 std::unique_ptr<CheckpointFile> open_checkpoint(const std::filesystem::path& run_dir, const CheckpointLabels& labels);
 
-/// Keeps a run's states in its folder: every `interval` of wall time and at its end.
+/// Saves a run's states in its folder: every `interval` of wall time and at its end.
 class CheckpointKeeper final : public StateKeeper {
 public:
     /// `from`: the state to go on from, or nullptr. An interval of zero: only at the end.

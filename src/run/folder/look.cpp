@@ -125,7 +125,7 @@ void observe_motion(const LoadedFrame& frame, Seen& seen) {
     seen.busy_nodes = std::count_if(depth.begin(), depth.end(), [&](double h) { return h > seen.thin; });
 }
 
-/// Looks at no more than seven frames: ranges need no more, and a long run has hundreds.
+/// Reads no more than seven frames: ranges need no more, and a long run has hundreds.
 Seen observe_frames(const fs::path& run_dir) {
     Seen seen;
     const std::vector<double> times = frame_times(run_dir);

@@ -24,7 +24,7 @@ struct ProductRaster {
 /// The run's bed as `elevation`. Rasters show the flow on it. It tells nodes without flow from nodes without terrain.
 ProductRaster elevation_raster(const Raster& bed);
 
-/// Keeps the rasters of the last frame; they are written once the run is over (write_products).
+/// Stores the rasters of the last frame; they are written once the run is over (write_products).
 class LastFields : public Observer {
 public:
     /// `crs_wkt` goes into every raster.
