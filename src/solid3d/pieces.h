@@ -15,8 +15,8 @@ struct Pieces {
     double alone = 0.0;
 };
 
-/// Of all points of a grid. Sums run in the order of cells and points: the same bits for any number of threads. Asks
-/// for memory, so it is for output times.
+/// Of all points of a grid. Sums run in the order of cells and points: the same bits for any number of threads.
+/// Allocates memory, so it is for output times.
 Pieces pieces_of(const MaterialPoints& points, const Grid3d& grid);
 
 }  // namespace frana
