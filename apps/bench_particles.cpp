@@ -1,5 +1,5 @@
 // Time and volume error of the particle generation on the test of Fois, de Falco, Formaggia (2025),
-// section 4.1: 100 x 100 pixels of 1 m, h = 1 + 2 exp(-((x - 50)^2 + (y - 50)^2) / 150), 10^4 to 4 10^6
+// section 4.1. It has 100 x 100 pixels of 1 m, h = 1 + 2 exp(-((x - 50)^2 + (y - 50)^2) / 150), 10^4 to 4 10^6
 // particles.
 //   frana_bench_particles [lattice|r2|slope]
 #include <fmt/core.h>

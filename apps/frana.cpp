@@ -387,7 +387,7 @@ int run_program(int argc, char** argv) {
     if (argc > 1) refuse_unknown(app, argv[1]);
     try {
         app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {  // also how CLI11 asks for help or version to be printed
+    } catch (const CLI::ParseError& error) {  // CLI11 also throws for help and version
         if (error.get_exit_code() == 0) return app.exit(error);
         throw UserError(
             fmt::format("command line: found a mistake: {}; expected a command with its arguments; see "
@@ -397,9 +397,9 @@ int run_program(int argc, char** argv) {
     return action();
 }
 
-/// Threads of OpenMP spin for milliseconds before they sleep; beside other work on the machine that is time the others
-/// would compute in (measured: 25 times slower with two threads on two busy cores). They are told to sleep soon, unless
-/// the environment has a wish of its own. The runtime reads the environment once: this comes before, where it is a part of
+/// Threads of OpenMP spin for milliseconds before they sleep. With other work on the machine the others would compute
+/// in that time. Measured: 25 times slower with two threads on two busy cores. They are told to sleep soon, unless the
+/// environment has a wish of its own. The runtime reads the environment once. This comes before, where it is a part of
 /// the program (CMakeLists.txt), and elsewhere is in vain.
 [[gnu::constructor(101)]] void wait_briefly() {
     if (!std::getenv("OMP_WAIT_POLICY")) setenv("GOMP_SPINCOUNT", "1000", 0);

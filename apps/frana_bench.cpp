@@ -1,4 +1,4 @@
-// `frana bench`: cost of a step by phase, beside what the machine can do, measured in the same process.
+// `frana bench`: cost of a step by phase, compared with what the machine can do, measured in the same process.
 #include <fmt/core.h>
 
 #include "base/atomic_file.h"

@@ -43,7 +43,7 @@ std::vector<double> take(const std::vector<std::vector<EventRun>>& runs, Calibra
     return all;
 }
 
-/// False when an end was asked for.
+/// False when an end was requested.
 bool run_rounds(const EventRuns& runs, KeptRuns& kept, const CalibrateOptions& options, Calibration& found) {
     const CalibrationPlan& plan = found.plan;
     RunTeller teller(static_cast<std::size_t>(plan.samples * plan.rounds) * plan.events.size(), options.quiet,
@@ -103,7 +103,7 @@ void forget_prediction(const fs::path& dir) {
     fs::remove(predict / "ensemble.path");  // last: without it what is left would be taken for others'
 }
 
-/// Removes an earlier calibration. Its record goes first: whoever finds it takes all the rest for whole.
+/// Removes an earlier calibration. Its record goes first: without it nothing takes the rest for whole.
 void forget_calibration(const fs::path& dir) {
     fs::remove(dir / "calibrate.json");
     KeptRuns::remove(dir);
@@ -147,7 +147,8 @@ void try_prediction(const CalibrationPlan& plan) {
     require_kept_thresholds(*plan.predict, scene.output.footprint_depth, "predict");
 }
 
-/// predict.toml: the ensemble, and a mark of its case and the files that this names, for who asks whether they have changed.
+/// predict.toml: the ensemble, and a mark of its case and the files that this names. The mark tells whether they have
+/// changed.
 std::string text_of_prediction(const EnsemblePlan& maps) {
     return fmt::format("# case and files {:016x}\n", sum_of(mark_of_inputs(CaseFile::read(maps.case_file)))) +
            ensemble_of_table(maps, "posterior.csv");

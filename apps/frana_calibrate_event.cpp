@@ -26,7 +26,7 @@ double perimeter_of(const Rings& rings) {
     return sum;
 }
 
-/// A raster without values where the run begins and where the survey is: both are needed of what else was surveyed.
+/// A raster without values where the run begins and where the survey is. Both are needed of what else was surveyed.
 Raster around(const EnsembleBase& base) {
     std::vector<Vec2> points;
     for (const auto& ring : *base.survey) points.insert(points.end(), ring.begin(), ring.end());
@@ -116,7 +116,7 @@ void EventSurvey::read_gauges(const SurveyedEvent& event) {
     }
 }
 
-/// Keeps the largest depths and speeds at the gauges, and compares the last frame.
+/// Stores the largest depths and speeds at the gauges, and compares the last frame.
 class EventSurvey::Watch : public Observer {
 public:
     Watch(const EventSurvey& event, EventScores& scores)

@@ -18,7 +18,7 @@ public:
     /// `base` is the event's case. Throws UserError for what is not there, or has no place on the terrain.
     EventSurvey(const SurveyedEvent& event, const EnsembleBase& base);
 
-    /// Looks on while the event's case runs; at the end `scores` has how near it came. Must not outlive this.
+    /// Observes while the event's case runs; at the end `scores` has how near it came. Must not outlive this.
     std::unique_ptr<Observer> watch(EventScores& scores) const;
 
 private:

@@ -22,7 +22,7 @@ constexpr std::size_t kFieldsOfMisfit = 3;
 
 fs::path file_of(const fs::path& dir) { return dir / "kept" / "runs.csv"; }
 
-/// All that a run of an event and its scores hang on, but the values of the keys that vary.
+/// All that a run of an event and its scores depend on, but the values of the keys that vary.
 std::string decides(const SurveyedEvent& event) {
     std::string all = mark_of_inputs(CaseFile::read(event.runs.case_file));
     all += fmt::format(" {}", event.errors.correlation);

@@ -21,8 +21,8 @@ struct EventRun {
     bool ended() const { return reason == "end" || reason == "rest" || reason == "left"; }
 };
 
-/// DIR/kept/runs.csv: a row of each run. What a run gives hangs on the values of the keys alone, so a row answers whoever asks
-/// for these values: more rounds, other samples and other priors go on with what is there.
+/// DIR/kept/runs.csv: a row of each run. A run's results depend on the values of the keys alone, so a row serves any
+/// request for these values. More rounds, other samples and other priors go on with what is there.
 class KeptRuns {
 public:
     /// Takes up what the folder has, but for what was refused. Throws UserError where it is of other events or another version.
@@ -50,7 +50,7 @@ private:
     std::mutex mutex_;
 };
 
-/// A sum of all that decides what a calibration finds, for one that is asked for again.
+/// A checksum of all that decides what a calibration finds, to recognise the same one.
 std::string mark_of(const CalibrationPlan& plan);
 
 }  // namespace frana

@@ -19,7 +19,8 @@ struct KeyPair {
 
 std::vector<KeyPair> pairs_of(const Calibration& c);
 
-/// How much more likely a value is than before the survey [1], by bins of its place in the prior, each with as much of that.
+/// How much more likely a value is than before the survey [1]. It is given by bins of its place in the prior, each with
+/// as much of that.
 std::vector<double> density_of(const Calibration& c, std::size_t key);
 
 /// Is compared by blocks, some of which may have no survey.

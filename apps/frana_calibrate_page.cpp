@@ -88,7 +88,7 @@ std::string unsurveyed_section(const Calibration& c, std::size_t best) {
     return text;
 }
 
-/// How far the best point's runs are off in all that counts, beside what was expected of them.
+/// How far the best point's runs are off in all that counts, with what was expected of them.
 std::string misfits_section(const Calibration& c, std::size_t best) {
     std::string text = "| Event | what counts | best point | sigma | independent errors |\n|---|---|---:|---:|---:|\n";
     for (std::size_t e = 0; e < c.fits.size(); ++e) {

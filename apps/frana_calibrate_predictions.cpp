@@ -16,7 +16,8 @@ namespace {
 constexpr double kFewTell = 10.0;  ///< points of equal weight below which what they tell may be chance
 constexpr double kNone = 1e-6;  ///< a share of the weight that is as good as none, and the rounding of a sum of shares
 
-/// Of numbers with weights, sorted: where half of the weight lies below a number and half above the one before, their mean.
+/// Of numbers with weights, sorted. Where half of the weight lies below a number and half above the one before, their
+/// mean.
 double median_of(const std::vector<std::pair<double, double>>& sorted, double all) {
     double below = 0.0;
     for (std::size_t k = 0; k < sorted.size(); ++k) {
@@ -58,8 +59,8 @@ std::vector<double> weights_of(const Calibration& c, const Takes& takes) {
     return c.posterior.weights(sum);
 }
 
-/// A sentence where `told` predicts the event worse than what was known before. Medians are compared: a few runs far off move
-/// the mean of a wide prior, and hardly that of a survey.
+/// A sentence where `told` predicts the event worse than what was known before. Medians are compared. A few runs far
+/// off move the mean of a wide prior, and hardly that of a survey.
 std::string warning(const Calibration& c, const std::string& teller, std::size_t event, const Nearness& told,
                     const Nearness& prior) {
     const std::string& name = c.plan.events[event].name;

@@ -7,8 +7,8 @@
 
 namespace frana {
 
-/// How near runs come to an event by some knowledge: the distance of the outlines [m], by weight, of the runs in which something
-/// flowed. Not numbers where it did in none that has weight.
+/// How near runs come to an event by some knowledge: the distance of the outlines [m], by weight. Only runs in which
+/// something flowed count. Not numbers where it did in none that has weight.
 struct Nearness {
     double mean = 0.0, median = 0.0;
     double effective = 0.0;  ///< points of equal weight that tell as much

@@ -19,7 +19,7 @@ public:
     EventRuns(const CalibrationPlan& plan, int threads, const Interrupt& interrupt);
 
     /// Runs all events at all points, each a place in the unit cube: results by event, then point. What `kept` has is not run
-    /// again, and it gets the others. `done` hears of each run, on any thread. Nothing when an end was asked for.
+    /// again, and it gets the others. `done` hears of each run, on any thread. Nothing when an end was requested.
     std::optional<std::vector<std::vector<EventRun>>> at(const std::vector<std::vector<double>>& points, KeptRuns& kept,
                                                          const std::function<void(const EventRun&)>& done) const;
 

@@ -32,7 +32,7 @@ public:
             if (std::isfinite(log)) worst_ = std::max(worst_, -log);
     }
 
-    /// Not finite where a run has no answer. Nothing when an end was asked for.
+    /// Not finite where a run has no answer. Nothing when an end was requested.
     std::optional<std::vector<double>> at(const std::vector<std::vector<double>>& points) {
         const auto runs = runs_.at(points, kept_, [](const EventRun&) {});
         if (!runs) return std::nullopt;
@@ -49,11 +49,12 @@ public:
         return all;
     }
 
-    /// Of the events, at the k-th point asked for last.
+    /// Of the events, at the k-th point of the last request.
     const std::vector<EventScores>& scores(std::size_t k) const { return scores_[k]; }
     /// As far off as any run that has an answer.
     double worst() const { return worst_; }
-    /// Points that neither the rounds nor the search had asked for before: so many, whatever was kept of a search that was cut off.
+    /// Points that neither the rounds nor the search had used before. Their number does not depend on what was stored
+    /// of a search that was cut off.
     Index evaluations() const { return evaluations_; }
 
 private:
@@ -103,7 +104,7 @@ const char* reason_of(nlopt::result result) {
     }
 }
 
-/// Keeps the best point, and the first exception, which must not pass through the library.
+/// Stores the best point, and the first exception, which must not pass through the library.
 struct Search {
     Misfits& misfits;
     Optimum& best;

@@ -31,7 +31,7 @@ constexpr double seconds_per_point_step = 300e-9;  ///< of 3D points
 constexpr double seconds_per_cell_step = 100e-9;  ///< of cells of free water
 constexpr double kWaterCfl = 0.45;                ///< part of a cell that its waves pass in a step
 
-/// Free water is all that there is: it is on cells, and what is released and comes in has no particles.
+/// Free water is all that there is. It is on cells, and what is released and comes in has no particles.
 bool water_alone(const Scene& scene) { return scene.water && !scene.structure; }
 
 std::string crs_name(const std::string& wkt) {
@@ -108,7 +108,7 @@ struct Forecast {
     double particle_seconds = 0.0;  ///< sum of the times that particles are in the flow, or cells may be [s]
 };
 
-/// What a forecast sees of all material, at once or later.
+/// All material for a forecast, at once or later.
 struct Start {
     double lowest = INFINITY, top = -INFINITY;  ///< of the terrain, of the material's surface [m]
     double speed = 0.0, depth = 0.0;            ///< largest [m/s], [m]
@@ -209,8 +209,8 @@ double loose_way(const Polyline& path, const Raster& loose) {
     return way;
 }
 
-/// How far a flow that takes up its bed in proportion to its way grows on the steepest path over loose material, with a
-/// remark where that is more than a hundredfold.
+/// Growth of a flow that takes up its bed in proportion to its way, on the steepest path over loose material.
+/// There is a remark where that is more than a hundredfold.
 std::string growth_text(const BuiltScene& built) {
     constexpr double kHundredfold = 100.0;
     const Scene& scene = built.scene;
@@ -253,7 +253,7 @@ std::string stage_text(const Scene& scene) {
         seconds_text(steps * points * seconds_per_point_step), seconds_per_point_step * 1e9);
 }
 
-/// How many frames a run of the whole time leaves, and about how large they are, with a remark where they are many.
+/// How many frames a run of the whole time leaves, and about how large they are. There is a remark where they are many.
 std::string frames_text(const Scene& scene) {
     constexpr double kMany = 3000.0;
     constexpr double kParticle = 120.0, kNode = 25.0;  // bytes, compressed; measured

@@ -1,6 +1,6 @@
 #pragma once
-// The subcommands of the program: what the command line asks for, and the functions that do it.
-// Each returns an exit code or throws (base/error.h); main() in frana.cpp is the only one that catches.
+// The subcommands of the program: what the command line says, and the functions that do it. Each returns an exit code
+// or throws (base/error.h); main() in frana.cpp is the only one that catches.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -22,7 +22,7 @@ struct RunOptions {
     bool overwrite = false;         ///< replace the files of an earlier run in the folder
     bool quiet = false;
     std::string progress;                  ///< "json": lines for other programs; empty: for people
-    const Interrupt* interrupt = nullptr;  ///< who listens for Ctrl-C; nullptr: the run itself does
+    const Interrupt* interrupt = nullptr;  ///< listens for Ctrl-C; nullptr: the run itself does
 };
 
 /// `frana converge CASE --cells N,N,... [--out DIR] [--set key=value]... [--threads N] [--resume] [--overwrite] [--quiet]`
@@ -45,7 +45,7 @@ struct EnsembleOptions {
     std::filesystem::path out;        ///< folder of the runs and the maps
     std::filesystem::path join;       ///< a folder whose runs are made into maps, or empty
     std::string shard;                ///< as given: "3/40"; empty: all samples, then the maps
-    std::vector<std::string> exceed;  ///< "FIELD=VALUE", beside those of the file
+    std::vector<std::string> exceed;  ///< "FIELD=VALUE", besides those of the file
     std::optional<long long> again;   ///< a sample to write as a case of its own
     long long slurm = 0;              ///< shards of a job script to print; 0: none
     int threads = 0;
@@ -131,7 +131,7 @@ struct VerifyOptions {
     int threads = 0;
     std::filesystem::path json, table;  ///< files to write, or empty
     std::filesystem::path against;      ///< table to compare with, or empty
-    std::filesystem::path figure;       ///< PNG of error over run time beside other codes, or empty
+    std::filesystem::path figure;       ///< PNG of error over run time, with other codes, or empty
     bool study = false;                 ///< what each component of the scheme is worth
 };
 

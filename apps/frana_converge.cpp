@@ -144,7 +144,7 @@ std::vector<PlannedRun> plan_runs(const ConvergeOptions& options, const std::vec
     return runs;
 }
 
-/// The tables of an earlier study are replaced when asked for, other files of their names never.
+/// The tables of an earlier study are replaced when requested, other files of their names never.
 void require_room_for_tables(const fs::path& out, const ConvergeOptions& options) {
     std::ifstream stream(out / "converge.json");
     const auto record = nlohmann::json::parse(stream, nullptr, false);
@@ -178,7 +178,7 @@ Raster bed_of_finest(const FinestTerrain& finest, const fs::path& run_dir) {
     return shown ? finest.wider->read(united(*shown, finest.wider->held)) : finest.bed;
 }
 
-/// Every scene is built before the first run: what is wrong with the finest must not show after hours on the others.
+/// Every scene is built before the first run. What is wrong with the finest must not show after hours on the others.
 /// Finished runs must be of this very case. Returns the finest terrain.
 FinestTerrain check_scenes(const std::vector<PlannedRun>& runs) {
     FinestTerrain finest;
@@ -194,7 +194,7 @@ FinestTerrain check_scenes(const std::vector<PlannedRun>& runs) {
     return finest;
 }
 
-/// Tables of an earlier study do not stand beside runs that replace its own.
+/// Tables of an earlier study do not stand next to runs that replace its own.
 void remove_tables(const fs::path& out) {
     for (const std::string& name : study_files()) fs::remove(out / name);
 }

@@ -165,7 +165,7 @@ ChartPanel panel_of(const ConvergenceStudy& study, const char* label,
     return panel;
 }
 
-/// Which values the rule asks for.
+/// Which values the rule requires.
 Curve bound(const std::string& name, double from, double to, double value) {
     return {name, {from, to}, {value, value}, Curve::Kind::line, false};
 }
@@ -178,8 +178,8 @@ double largest_in(const ChartPanel& panel) {
     return largest > 0.0 ? largest : 1.0;
 }
 
-/// Runouts less the finest one, which the legend names; a coarsest cell above and below is shown at least, or what a
-/// raster cannot tell would look like a change.
+/// Runouts less the finest one, which the legend names. At least a coarsest cell above and below is shown. Otherwise
+/// what a raster cannot tell would seem to be a change.
 ChartPanel runout_panel(const ConvergenceStudy& study) {
     using F = CellFigures;
     ChartPanel panel = panel_of(study, "runout, change [m]", {{"along the path", &F::runout}, {"straight", &F::reach}});

@@ -18,7 +18,7 @@ namespace frana {
 namespace fs = std::filesystem;
 namespace {
 
-/// What of a run is looked at.
+/// What of a run is read.
 struct RunFiles {
     nlohmann::json record;
     std::vector<ProductRaster> rasters;

@@ -42,7 +42,7 @@ struct ConvergenceStudy {
 /// Throws UserError when a folder lacks a raster or its run.json.
 void measure_runs(ConvergenceStudy& study, const Raster& bed);
 
-/// Names of the files that a study may leave in its folder beside those of its runs.
+/// Names of the files that a study may leave in its folder besides those of its runs.
 const std::vector<std::string>& study_files();
 
 /// Writes them: converge.png (a remark where it cannot be drawn), converge.md, converge.json. Throws UserError.

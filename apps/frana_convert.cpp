@@ -1,5 +1,5 @@
 // `frana convert`: the columns of a run become 3D points for other programs (Fois, de Falco, Formaggia 2025,
-// Algorithm 2), with a table of what was kept on the way.
+// Algorithm 2). A table tells what was conserved on the way.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -73,14 +73,14 @@ void tell_of_water(const ConvertOptions& options, const RunState& state) {
               << '\n';
 }
 
-/// Memory that points take until they are written; writing VTK needs cells, compressed blocks and their base64 besides
-/// (measured from 2.5e5 to 4.5e6 points: 142 bytes a point for HDF5, 318 for VTK) [bytes].
+/// Memory that points take until they are written [bytes]. Writing VTK needs cells, compressed blocks and their base64
+/// besides. Measured from 2.5e5 to 4.5e6 points: 142 bytes a point for HDF5, 318 for VTK.
 double bytes_needed(double points, const std::string& format) {
     constexpr double kIds = 8.0, kVtk = 176.0;
     return points * (kBytesPerPoint + kIds + (format == ".vtp" ? kVtk : 0.0));
 }
 
-/// Refuses what does not fit, before any of it is asked for.
+/// Refuses what does not fit, before any of it is allocated.
 void require_memory(const FlowColumns& columns, double spacing, const std::string& format) {
     const double points = forecast_points(columns, spacing);
     const double bytes = bytes_needed(points, format), free = free_memory();
@@ -120,7 +120,7 @@ PointTable table_of(const SolidPoints& points, const RunState& state, double den
     return table;
 }
 
-/// A fluid that is stiff enough for its own flow: sound ten times as fast as its waves and its material, so that the
+/// A fluid that is stiff enough for its own flow. Sound is ten times as fast as its waves and its material. So the
 /// density changes by about 1 % (Monaghan 1994).
 double sound_speed(const SolidPoints& points, const FlowColumns& columns, double gravity) {
     double fastest = 0.0;

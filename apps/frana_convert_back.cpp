@@ -1,5 +1,5 @@
 // `frana convert --points FILE --back DIR`: 3D points, of whatever program, become rasters of depth and velocity on a
-// run's grid, from which a case can go on depth-averaged.
+// run's grid. A case can go on from them depth-averaged.
 #include <fmt/format.h>
 
 #include <algorithm>

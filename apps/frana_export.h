@@ -8,7 +8,7 @@
 
 namespace frana {
 
-/// The format that a file name asks for, ".h5", ".json", ".csv", ".vtp" or one of `more`; known before any work is
+/// The format that a file name gives: ".h5", ".json", ".csv", ".vtp" or one of `more`. It is clear before any work is
 /// done. UserError for another extension.
 std::string export_format(const std::filesystem::path& file, const std::vector<std::string>& more = {});
 

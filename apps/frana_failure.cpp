@@ -17,7 +17,7 @@ bool is_shortage(const std::error_code& code) {
            code == std::errc::too_many_files_open || code == std::errc::too_many_files_open_in_system;
 }
 
-/// TBB, which VTK may work with, tells of a shortage by an error without code that ends with the system's words for it.
+/// TBB, which VTK may work with, tells of a shortage by an error without code. It ends with the system's words for it.
 bool tells_of_shortage(const std::exception& error) {
     const std::string text = error.what();
     for (const std::errc code : {std::errc::resource_unavailable_try_again, std::errc::not_enough_memory}) {

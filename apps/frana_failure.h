@@ -1,5 +1,5 @@
 #pragma once
-// What an exception means for who called the program: exit code, word and sentence.
+// What an exception means for the caller of the program: exit code, word and sentence.
 #include <cstddef>
 #include <exception>
 #include <string>

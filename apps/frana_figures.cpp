@@ -178,7 +178,7 @@ void read_bed(FigureSource& source, std::vector<std::string>& warnings) {
 
 /// Maps of the frame nearest to a time: figures/map_depth_t12.5s.png, map_speed_t12.5s.png, damage, and with stresses
 /// map_effective_stress_xx_t12.5s.png and so on.
-/// `shown` keeps what they show.
+/// `shown` stores what they show.
 void add_moment(const FigureSource& source, double time, std::list<ProductRaster>& shown, Gallery& gallery) {
     const Index nearest = choose_frame(frame_times(source.run_dir), time, source.run_dir / "grid.pvd");
     const LoadedFrame frame = read_frame(source.run_dir, nearest);

@@ -25,7 +25,8 @@ public:
     void into(const std::filesystem::path& folder) { folder_ = std::filesystem::absolute(folder); }
     void reason(const std::string& word) { reason_ = word; }
 
-    /// Calls `command`, which returns an exit code or throws; the last line comes either way, and what was thrown after it.
+    /// Calls `command`, which returns an exit code or throws. The last line comes either way, and what was thrown after
+    /// it.
     int around(const std::function<int()>& command);
 
 private:

@@ -8,8 +8,8 @@ namespace frana {
 /// The options of `frana stress --case` that watch `draft` as the campaign did.
 std::string replay_options(const stress::Draft& draft);
 
-/// Writes a failing draft as a case that `frana run` and `frana stress --case` read: case.toml, its rasters as GeoTIFF,
-/// and its particles as particles.csv for looking at. Throws UserError when the disk refuses.
+/// Writes a failing draft as a case that `frana run` and `frana stress --case` read. It is case.toml, its rasters as
+/// GeoTIFF, and its particles as particles.csv for inspection. Throws UserError when the disk refuses.
 void save_draft(const std::filesystem::path& folder, const stress::Draft& draft, const stress::Violation& broken);
 
 }  // namespace frana

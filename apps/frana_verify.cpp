@@ -115,7 +115,8 @@ std::string lines_of(std::istream& table, const std::vector<std::string>& names,
     return all;
 }
 
-/// Prints how the table differs from an earlier one, in the lines of the problems and grids that ran; 1 when it does.
+/// Prints how the table differs from an earlier one, in the lines of the problems and grids that ran. Returns 1 when it
+/// does.
 int compare(const std::string& table, const VerifyOptions& options) {
     constexpr double tolerance = 0.05;  // another compiler's round-off, grown by splitting; not another scheme
     std::ifstream file(options.against);

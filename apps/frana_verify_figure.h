@@ -8,8 +8,9 @@
 
 namespace frana {
 
-/// Runs the problems (default: those that other codes were measured on) with several presets and points a cell, each on
-/// its own grids, and draws their errors over wall time beside the other codes' into a PNG. Prints what it measures.
+/// Runs the problems with several presets and points a cell, each on its own grids. By default they are those that
+/// other codes were measured on. Draws their errors over wall time, together with the other codes', into a PNG. Prints
+/// what it measures.
 void draw_work_precision(std::vector<const verify::Problem*> problems, const std::filesystem::path& png);
 
 /// Prints the table of the component study; also into `table` unless that is empty.

@@ -1,9 +1,9 @@
 // Made-up ground with the figures of Fois, de Falco, Formaggia (2025), section 4.4.2. The elevation model of
-// the paper, a hill near Lecco, is not public. What it says is kept: 750 x 1000 m on 151 x 201 nodes, natural
-// slopes of 60 to 68 degrees, a release of 0.02 Z within an ellipse, 5.8e3 m3, and flat ground at the foot of
-// the hill, before which the barrier stands. What it does not say is the ground's shape. Here it is a round
-// hill with a terrace, on which the mass stands, and cliffs below it; where the mass goes, the cliffs are cut
-// by a ramp with banks, so that it takes about half a minute to the barrier and comes with about 20 m/s.
+// the paper, a hill near Lecco, is not public. What it says is used. That is 750 x 1000 m on 151 x 201 nodes, natural
+// slopes of 60 to 68 degrees. The release is 0.02 Z within an ellipse, 5.8e3 m3. There is flat ground at the foot of
+// the hill, before which the barrier stands. What it does not say is the ground's shape. Here it is a round hill with a
+// terrace, on which the mass stands, and cliffs below it. Where the mass goes, the cliffs are cut by a ramp with banks.
+// So it takes about half a minute to the barrier and comes with about 20 m/s.
 #include <algorithm>
 #include <cmath>
 
@@ -85,7 +85,7 @@ std::vector<Vec2> release_outline() {
     return ring;
 }
 
-/// What has to be added to an elevation so that 0.02 of it over the ellipse is the volume: midpoint rule.
+/// What has to be added to an elevation so that 0.02 of it over the ellipse is the volume. Midpoint rule.
 template <class Elevation>
 double level_for_volume(const Elevation& z) {
     const int n = 400;

@@ -1,7 +1,6 @@
 // Made-up ground with the figures of Fois et al. (2024), section 4.3. The elevation model of the paper is not
-// public. Friction at the bed is 34 degrees, the slope only 28: a slab would stand. What moves is the front,
-// so the bed is 31.5 degrees steep under it (25 under the rest, 28 in the mean) and the mass is deepest near
-// it.
+// public. Friction at the bed is 34 degrees, the slope only 28: a slab would stand. What moves is the front. So the bed
+// is 31.5 degrees steep under it (25 under the rest, 28 in the mean). The mass is deepest near it.
 #include <algorithm>
 #include <cmath>
 
@@ -55,8 +54,7 @@ double valley_floor(double x, double y) {
     return 0.0016 * other_side * other_side - 4.0 * std::exp(-std::pow(from_axis, 4));
 }
 
-/// A hollow along the mass's axis, a scarp of 14 m around its head, and spurs and swells on the slope beside
-/// it.
+/// A hollow along the mass's axis and a scarp of 14 m around its head. The slope around it has spurs and swells.
 double slope_relief(double x, double y) {
     const double across = x - kMiddle;
     const double flank = smooth_step((std::abs(across) - 120.0) / 250.0);
@@ -86,8 +84,8 @@ double mass_shape(double x, double y) {
     return r < 1.0 ? kDepth * (1.0 - std::pow(r, kShape)) : 0.0;
 }
 
-/// Half the width of the made-up survey at y [m]: the standing mass with the ground beside it down to where it is
-/// deepest, then a lobe that spreads on the valley floor and closes at `toe`.
+/// Half the width of the made-up survey at y [m]. It is the standing mass with the adjacent ground down to where it is
+/// deepest. Then comes a lobe that spreads on the valley floor and closes at `toe`.
 double surveyed_half_width(double y, double crown, double toe) {
     const double widest = kToe + kDeepest * kLength;
     const double flank = 112.0;  // [m]; the mass itself has 109.5
@@ -97,9 +95,9 @@ double surveyed_half_width(double y, double crown, double toe) {
     return (flank + 18.0 * smooth_step((widest - y) / 80.0)) * std::sqrt(std::max(0.0, 1.0 - end * end));
 }
 
-/// An outline as somebody might have mapped it after the event, drawn from what the paper prints and never from a run:
-/// from the headscarp's crown down to a toe 500 m below the mass's upper end, on x = kMiddle (section 4.3: "nearly
-/// 500 m"). Its edges waver by 5 m, as a hand's do, and the lobe leans downstream.
+/// An outline as somebody might have mapped it after the event. It is drawn from what the paper prints and never from a run.
+/// It goes from the headscarp's crown down to a toe 500 m below the mass's upper end, on x = kMiddle. (Section 4.3:
+/// "nearly 500 m".) Its edges waver by 5 m, as a hand's do, and the lobe leans downstream.
 std::vector<Vec2> survey_outline() {
     const double crown = kToe + 1.03 * kLength, toe = kToe + kLength - 500.0;
     const int steps = 64;

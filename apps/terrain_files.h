@@ -5,9 +5,8 @@
 
 namespace frana {
 
-/// Writes a raster as GeoTIFF of float64 pixels, deflated, without CRS (the ground is made up); the pixel
-/// centres are the raster's nodes. NaN is written as such and declared as nodata. UserError with GDAL's
-/// reason.
+/// Writes a raster as GeoTIFF of float64 pixels, deflated, without CRS (the ground is made up). The pixel centres are
+/// the raster's nodes. NaN is written as such and declared as nodata. UserError with GDAL's reason.
 void write_made_raster(const std::filesystem::path& file, const Raster& raster);
 
 /// Writes outlines as GeoJSON in map coordinates, a feature each. UserError when the file cannot be written.

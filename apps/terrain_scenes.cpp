@@ -126,7 +126,7 @@ MadeScene debris_flow() {
     const auto z = [&](double x, double y) {
         const double across = y - middle,
                      bend = 25.0 * std::sin(x / 140.0) * smooth_step(x / 200.0) * smooth_step((1000.0 - x) / 200.0);
-        // Flanks of 27 degrees that round off at the bottom; they are gone 150 m below the mouth, where a cone begins.
+        // Flanks of 27 degrees that round off at the bottom. They are gone 150 m below the mouth, where a cone begins.
         const double flank = std::sqrt(squared(0.5 * (across - bend)) + 9.0) - 3.0;
         const double share = smooth_step((mouth + 150.0 - x) / 300.0), cone = 0.04 * std::abs(across);
         return 400.0 - drop[static_cast<std::size_t>(std::lround(x / cell))] + share * flank - (1.0 - share) * cone;

@@ -27,53 +27,53 @@ struct MadeScene {
     std::vector<MadeOutline> outlines;
 };
 
-/// Lake at rest of Fois et al. (2024), section 4.1, first bed: Z = 5 exp(-2/5 |x - (5, 5)|^2) on [0, 10]^2,
-/// 50 x 50 cells (eq. 34).
+/// Lake at rest of Fois et al. (2024), section 4.1, first bed. Z = 5 exp(-2/5 |x - (5, 5)|^2) on [0, 10]^2, 50 x 50
+/// cells (eq. 34).
 MadeScene lake_z1();
 /// The second bed: 4 on [4, 8]^2, otherwise 0 (eq. 34).
 MadeScene lake_z2();
 /// Collapse onto an obstacle, section 4.2: Z = 60 - x/3 + 15 exp(-((x - 50)^2 + (y - 10)^2)/7) on [0, 150] x
-/// [0, 20] (eq. 37), with a block of 37.5 x 14 m upstream of the obstacle.
+/// [0, 20] (eq. 37). A block of 37.5 x 14 m stands upstream of the obstacle.
 MadeScene obstacle();
-/// Section 4.3 on made-up ground: a mountainside of 28 degrees above a valley floor with a river, 1500 x 1350
-/// m, and 1.2e6 m3 of rock, 38 m deep and 400 m long, standing on it; with a made-up survey of its trace
-/// (terrain_bindo.cpp has the design).
+/// Section 4.3 on made-up ground. A mountainside of 28 degrees stands above a valley floor with a river, 1500 x 1350 m.
+/// On it stand 1.2e6 m3 of rock, 38 m deep and 400 m long. There is a made-up survey of its trace (terrain_bindo.cpp
+/// has the design).
 MadeScene bindo();
-/// Sliding to the wall, Fois et al. (2025), section 4.4.1: Z = 10 - x/3 down to x = 10, then flat, on [0, 25] x [0, 5], with
-/// the water of [1.5, 5] and a wall at x = 20.
+/// Sliding to the wall, Fois et al. (2025), section 4.4.1: Z = 10 - x/3 down to x = 10, then flat, on [0, 25] x [0, 5].
+/// The water is on [1.5, 5], and a wall at x = 20.
 MadeScene wall();
-/// Section 4.4.2 on made-up ground: a hill of 750 x 1000 m with cliffs, and 5.8e3 m3 of mud on a terrace of it
-/// (terrain_barrier_hill.cpp has the design).
+/// Section 4.4.2 on made-up ground: a hill of 750 x 1000 m with cliffs. 5.8e3 m3 of mud lie on a terrace of it.
+/// terrain_barrier_hill.cpp has the design.
 MadeScene barrier_hill();
 /// Section 4.3: h = 10 - sin(2x) cos(y) on [0, 5]^2, on flat ground (eq. 10).
 MadeScene conversion();
-/// A flat plate of 0.8 x 0.8 m, and the foot of a column of sand of 0.1 m radius in its middle.
+/// A flat plate of 0.8 x 0.8 m. In its middle is the foot of a column of sand of 0.1 m radius.
 MadeScene column_collapse();
-/// Flume of van den Bout et al. (2021), section 3, as it is assumed here, unrolled: x along its floor, 42 degrees up to
-/// x = 0 and 5 behind, 0.5 m wide, with a block of 0.30 x 0.25 m above the break and an obstacle below it.
+/// Flume of van den Bout et al. (2021), section 3, as it is assumed here, unrolled. x is along its floor, 42 degrees up
+/// to x = 0 and 5 behind; it is 0.5 m wide. A block of 0.30 x 0.25 m lies above the break and an obstacle below it.
 MadeScene clay_flume();
-/// Blocks of 100 x 60 m after section 4 there: over a convex slope of 10, then 30 degrees (scenarios 2A, 2B), and down
-/// 25 degrees into a valley whose floor falls off to both sides (3A, 3B), or rises a little (3C).
+/// Blocks of 100 x 60 m after section 4 there. Some lie over a convex slope of 10, then 30 degrees (scenarios 2A, 2B).
+/// Others go down 25 degrees into a valley. Its floor falls off to both sides (3A, 3B), or rises a little (3C).
 MadeScene blocks();
-/// A gully that falls by 28 degrees at its head and 5 at its mouth, V-shaped and 14 m deep, and the fan before it; 5 m
-/// cells, with a debris of 12 000 m2 in its bed.
+/// A V-shaped gully, 14 m deep, and the fan before it. It falls by 28 degrees at its head and 5 at its mouth. Its bed
+/// has a debris of 12 000 m2; 5 m cells.
 MadeScene debris_flow();
 /// Fois et al. (2025), section 4.1: h = 1 + 2 exp(-((x - 50)^2 + (y - 50)^2)/150) on 100 x 100 pixels, on
 /// flat ground.
 MadeScene tiff_particles();
-/// A parabola of 34 degrees at its head and 12 at its foot, then flat ground, with a channel down its middle;
-/// 5 m cells.
+/// A parabola of 34 degrees at its head and 12 at its foot, then flat ground. A channel runs down its middle; 5 m
+/// cells.
 MadeScene avalanche_track();
-/// A gully of 30 degrees at its head and 9 at its mouth, and the fan before it, with a raster of the loose ground in its bed
-/// and a scar at its head; 2.5 m cells.
+/// A gully of 30 degrees at its head and 9 at its mouth, and the fan before it. It has a raster of the loose ground in
+/// its bed and a scar at its head; 2.5 m cells.
 MadeScene loose_gully();
-/// A fan of 8 degrees at its apex and 4 at its foot below a gully, with its outline and nine houses; 2.5 m cells.
+/// A fan of 8 degrees at its apex and 4 at its foot below a gully. It has its outline and nine houses; 2.5 m cells.
 MadeScene fan();
-/// Two gullies 230 m apart on a slope of 32 degrees at its head and 3 at its foot, rough by a metre or two, with the scars of
-/// two slides and of one that is feared; 10 m cells.
+/// Two gullies 230 m apart on a slope, 32 degrees at its head and 3 at its foot. It is rough by a metre or two. It has the
+/// scars of two slides and of one that is feared; 10 m cells.
 MadeScene two_gullies();
-/// A mountain valley with bends, with a moraine of 26 m across it that is cut through to its floor, an outline of the lake
-/// behind it, and a plain below; 10 m cells.
+/// A mountain valley with bends. A moraine of 26 m across it is cut through to its floor. There are an outline of the
+/// lake behind it, and a plain below; 10 m cells.
 MadeScene moraine_lake();
 
 /// A scene by name.

@@ -72,7 +72,7 @@ TEST_CASE("What is added between two steps is a release that enters then, bit fo
     CHECK(added.status().mass_in == late.status().mass_in);
 }
 
-TEST_CASE("What is added closes the balances, beside inflows too", "[added][inflow]") {
+TEST_CASE("What is added closes the balances, next to inflows too", "[added][inflow]") {
     Scene scene = moving();
     Inflow inflow;
     inflow.name = "flood", inflow.line = {{20, 14}, {20, 30}}, inflow.to_right = true, inflow.spacing = 0.5;
@@ -137,7 +137,7 @@ TEST_CASE("A place without ground, and a model that takes nothing, are refused i
     CHECK_THROWS_AS(other.add({}), InternalError);
 }
 
-TEST_CASE("Material is added beside barriers, and where the terrain grows for it", "[added][terrain]") {
+TEST_CASE("Material is added next to barriers, and where the terrain grows for it", "[added][terrain]") {
     Scene walled = moving();
     Barrier wall;
     wall.name = "wall";

@@ -262,7 +262,7 @@ TEST_CASE("Columns that go over a wall of a tenth of a cell are counted too", "[
     CHECK(over <= run.status().mass * (1.0 + 1e-12));
 }
 
-TEST_CASE("A stream meets a bank higher than its energy and stays below", "[barrier]") {
+TEST_CASE("A stream meets a step in the bed higher than its energy and stays below", "[barrier]") {
     // Front of a dam break in a stream: 5 m/s and twice the speed of its waves, so up to 6.5 m; all else 2.3 m.
     Scene scene = channel(8.0);
     scene.solid.reset();
@@ -373,7 +373,7 @@ TEST_CASE("A run against a barrier has the same bits when it is taken up again",
 }
 
 // The stage ends before anything is at the wall. From then on columns go over it, each of which counts once.
-TEST_CASE("Barriers are watched on after the stage in space, and taken up again", "[barrier]") {
+TEST_CASE("Barriers are observed on after the 3D stage, and resumed", "[barrier]") {
     Scene scene = channel(0.2);
     scene.solid->until = 0.2;
     StagedRun straight(scene);
@@ -504,7 +504,7 @@ TEST_CASE("Where points are no more, a barrier's table has no force, and none is
     CHECK(summaries.at(0).blur == 0.0);
 }
 
-TEST_CASE("A barrier's mean force knows nothing of a short blow", "[barrier]") {
+TEST_CASE("A barrier's mean force does not depend on a short blow", "[barrier]") {
     const FreshFolder scratch;
     const auto& folder = scratch.path();
     std::vector<BarrierSummary> summaries;

@@ -279,7 +279,7 @@ TEST_CASE("A 3D stage ends: all points become columns, which go on", "[stages]")
     CHECK(std::abs(residual) < 0.01 * now.kinetic);
 }
 
-TEST_CASE("Where a 3D stage ends while columns go on beside it, none of them gets a push", "[stages]") {
+TEST_CASE("Where a 3D stage ends while adjacent columns go on, no force acts on any of them", "[stages]") {
     // With velocities half a step apart the momentum of a frame would jump by a hundredth.
     const Scene scene = slab(2, 1.6);
     StagedRun run(scene);

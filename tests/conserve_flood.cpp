@@ -251,7 +251,7 @@ TEST_CASE("An inflow down a plane comes to Manning's normal depth and leaves by 
     CHECK((run->status().mass_left - before) / run->status().dt == Approx(5000.0).epsilon(1e-8));
 }
 
-TEST_CASE("Inflows of water: volume of any table, by a bent line, over an area and from a volume with its peak",
+TEST_CASE("Inflows of water: volume of any table, by a bent line, over an area, of a volume with its peak",
           "[water][alone][inflow]") {
     const FreshFolder folder;
     const auto basin = [](double x, double y) { return 50.0 + 0.01 * ((x - 40) * (x - 40) + (y - 5) * (y - 5)); };

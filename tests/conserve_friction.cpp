@@ -80,7 +80,7 @@ TEST_CASE("Nodes that all have the law of the scene change no bit of structured 
         }
 }
 
-TEST_CASE("Cells that all have the water's friction change no bit of columns beside it; others do",
+TEST_CASE("Cells that all have the water's friction change no bit of columns with it; others do",
           "[zones][structured][water]") {
     const auto bits_of = [](double coefficient, std::optional<double> behind) {
         Scene scene = on_slope(bed::Coulomb{0.25}, 5, 17);

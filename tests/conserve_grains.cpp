@@ -168,7 +168,7 @@ TEST_CASE("Grains that spread, split and meet a wall have the same bits for any 
     omp_set_num_threads(threads);
 }
 
-TEST_CASE("A kept run of grains that split goes on with the same bits", "[structured][grains]") {
+TEST_CASE("A resumed run of grains that split goes on with the same bits", "[structured][grains]") {
     Scene scene = box_on(0.4, 0.2);
     scene.structure = grains(true);
     StructuredRun whole(scene);
@@ -184,7 +184,7 @@ TEST_CASE("A kept run of grains that split goes on with the same bits", "[struct
     CHECK(state_bits(whole) == state_bits(resumed));
 }
 
-TEST_CASE("A kept run of grains splits no lighter columns than it did before", "[structured][grains]") {
+TEST_CASE("A resumed run of grains splits no lighter columns than it did before", "[structured][grains]") {
     Scene scene = box_on(0.4, 0.2);
     scene.structure = grains(true);
     // Lighter than scheme.split_min_mass (0.02) of the others: these are never split.
@@ -218,7 +218,7 @@ TEST_CASE("The mass at the start is as exact as the later ones, however many col
     CHECK(std::abs(flow.status().mass - first) < 32 * std::numeric_limits<double>::epsilon() * first);
 }
 
-TEST_CASE("Grains keep mass and momentum while they split and run off the grid", "[structured][grains]") {
+TEST_CASE("Grains conserve mass and momentum while they split and run off the grid", "[structured][grains]") {
     Scene scene = box_on(0.4, 0.2);
     scene.particles.vx.assign(scene.particles.x.size(), 12.0);
     scene.structure = grains(false);
@@ -230,7 +230,8 @@ TEST_CASE("Grains keep mass and momentum while they split and run off the grid",
     CHECK(flow.momentum_residual().norm() < 1e-12 * given);
 }
 
-TEST_CASE("Grains push the whole block beside them as hard as it holds them", "[structured][grains]") {
+TEST_CASE("The force of grains on the adjacent intact block is as large as the block's on them",
+          "[structured][grains]") {
     const bool hydrostatic = GENERATE(true, false);
     constexpr double kDepth = 2.0, kWidth = 10.0, kEnd = 0.3;
     StructuredScene scene;

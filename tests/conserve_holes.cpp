@@ -149,7 +149,7 @@ TEST_CASE("What is lost in open holes is a remark with its number, what leaves t
     CHECK(said < 0.9 * simulation.status().mass_left);
 }
 
-TEST_CASE("Frames have no elevation in holes, walls or not, and maps of speed no peak beside them", "[holes]") {
+TEST_CASE("Frames have no elevation in holes, walls or not, and maps of speed no peak next to them", "[holes]") {
     const Scene scene = walled(stream(Outline::square));
     DepthAveraged simulation(scene);
     const double top = 60.0 + 2.0 + 0.5 * 225 * 1.36 / 9.81;  // energy line at the start

@@ -50,7 +50,7 @@ double residual(const Status& first, const Status& now) {
 
 }  // namespace
 
-TEST_CASE("The volume of an inflow is its table's at each step, up to one row, and all of it at the end", "[inflow]") {
+TEST_CASE("The volume of an inflow is its table's at each step, up to one row, and in full at last", "[inflow]") {
     for (const bool slab : {false, true}) {
         const Scene scene = slope(slab);
         DepthAveraged run(scene);
@@ -177,7 +177,7 @@ TEST_CASE("An inflow goes on in the middle of its table with the same bits, on a
     }
 }
 
-TEST_CASE("Whether material sleeps changes no bit of an inflow beside it", "[inflow]") {
+TEST_CASE("Whether material sleeps changes no bit of an inflow next to it", "[inflow]") {
     Scene scene = slope(false);
     fill(scene, [](double x, double y) { return x > 60 && x < 80 && y > 10 && y < 30 ? 0.5 : 0.0; });
     scene.bed_law = bed::Voellmy{0.4, 300.0};  // the slab stays
@@ -343,7 +343,7 @@ TEST_CASE("The energy of an inflow from wall to wall has none of what holds it u
     CHECK(frame.status.potential == Approx(potential).epsilon(1e-12));
 }
 
-TEST_CASE("An inflow beside a barrier", "[inflow]") {
+TEST_CASE("An inflow next to a barrier", "[inflow]") {
     Scene scene = slope(false);
     Barrier wall;
     wall.name = "wall";

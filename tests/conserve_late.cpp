@@ -109,7 +109,7 @@ TEST_CASE("A release that enters later is a run that starts then, with the same 
         }
 }
 
-TEST_CASE("What enters beside a flow in motion closes the budgets", "[late]") {
+TEST_CASE("What enters next to a flow in motion closes the budgets", "[late]") {
     Scene scene = chain();
     scene.late[0].at = 2.0, scene.late[1].at = 2.0, scene.late[2].at = 2.5;
     for (double& v : scene.late[1].seeds.vx) v = 3.0;
@@ -189,8 +189,7 @@ TEST_CASE("A state put aside before a release enters comes back with all that it
     CHECK(simulation.erosion()->status().mass == simulation.erosion()->status().initial);
 }
 
-TEST_CASE("A release that is hit enters in the step in which one of its nodes is first deeper than the footprint depth",
-          "[late]") {
+TEST_CASE("A release that is hit enters when one of its nodes is first deeper than the footprint depth", "[late]") {
     const Scene scene = chain();
     Scene bare = scene;
     bare.late.clear();
@@ -280,7 +279,7 @@ TEST_CASE("A run waits for a release with a time, and is over without one that n
     CHECK(std::abs(budget(summary.first, summary.last).mass_error) < 1e-13);
 }
 
-TEST_CASE("Late releases go along where the terrain grows, and beside barriers", "[late][terrain]") {
+TEST_CASE("Late releases go along where the terrain grows, and next to barriers", "[late][terrain]") {
     Scene scene = growing_slope(NodeBox{180, 20, 200, 160});
     const auto heap = [](double x, double y) { return std::hypot(x - 1240, y - 400) < 40 ? 2.0 : 0.0; };
     fill(scene, heap);

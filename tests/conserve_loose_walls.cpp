@@ -177,7 +177,7 @@ TEST_CASE("Trees before a barrier hold back what flows, and none stand on it", "
     CHECK(before > 100);
 }
 
-TEST_CASE("Barriers in ground that sinks and rises keep its books, on any number of threads and after a resume",
+TEST_CASE("Barriers in ground that sinks and rises have closed budgets, on any number of threads and resumed",
           "[barrier][erosion][deposition][forest][threads]") {
     const Threads restore;
     const Scene scene = slide([](Scene& s) { leave_deposits(s), plant_trees(s); });

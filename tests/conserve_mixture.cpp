@@ -178,7 +178,7 @@ TEST_CASE("V10: drag alone brings columns and water together with their momentum
     CHECK(flow.columns().status().dragged == Approx(lost).epsilon(0.02));  // 1.6 % by the rim of the body
 }
 
-TEST_CASE("Drag slows columns beside a wall as it slows those in the open", "[mixture]") {
+TEST_CASE("Drag slows columns next to a wall as it slows those in the open", "[mixture]") {
     // A body along a wall on a row of nodes, whose shape functions are half open. Half of the water's cell has columns.
     for (const double share : {1.0, 0.5, 0.0}) {  // blocks, both, grains
         Basin basin(0.8, 1000.0, 2.0);
@@ -263,7 +263,7 @@ TEST_CASE("xi feeds the slip at its own rate, and is left out where drag is weak
     CHECK(slip_of(3.0, &outrun, 0.0).first == slip_of(0.0, &outrun, 0.0).first);
 }
 
-TEST_CASE("Beside dry columns there is no water, beside water no columns: each moves as if alone", "[mixture]") {
+TEST_CASE("Dry columns without water, and water without columns, each move as if alone", "[mixture]") {
     Basin basin(0.8, 1900.0, 0.0);
     for (double& v : basin.scene.columns.points.vx) v = 1.0;
     basin.scene.columns.bed_law = bed::Coulomb{0.2};

@@ -133,7 +133,7 @@ TEST_CASE("Particles show the pressure of the bed's curvature, as nodes do", "[c
     }
 }
 
-TEST_CASE("A place on a slope is asked for the speed along the bed, as frames have it", "[peaks]") {
+TEST_CASE("The speed at a place on a slope is that along the bed, as frames have it", "[peaks]") {
     constexpr double slope = 0.75;
     Scene scene = scene_on(41, 41, 1.0, [](double x, double) { return 60.0 - slope * x; });
     fill(scene, [](double x, double y) { return x > 5 && x < 35 && y > 5 && y < 35 ? 1.0 : 0.0; });

@@ -26,7 +26,7 @@ Scene blob(Precision precision) {
 
 }  // namespace
 
-TEST_CASE("Single precision keeps mass to round-off of double and stays near a run in double", "[precision]") {
+TEST_CASE("Single precision conserves mass to round-off of double and stays near a run in double", "[precision]") {
     DepthAveraged wide(blob(Precision::full)), narrow(blob(Precision::single));
     const double mass = narrow.status().mass;
     double moved = 0.0;

@@ -84,7 +84,7 @@ TEST_CASE("Points that rest before they could split do so all the same, and in a
     CHECK(straight->status().particles == 4 * scene.particles.count());
 }
 
-TEST_CASE("A kept state goes on with the same bits, with points that split, merge and leave", "[resume]") {
+TEST_CASE("A saved state goes on with the same bits, with points that split, merge and leave", "[resume]") {
     const Threads restored;
     const Scene scene = slide();
     const auto end = check_resume(scene, 4.0, 1, 1);
@@ -93,14 +93,14 @@ TEST_CASE("A kept state goes on with the same bits, with points that split, merg
     CHECK(end->status().mass_left > 0.0);
 }
 
-TEST_CASE("A kept state goes on with the same bits on another number of threads", "[resume][threads]") {
+TEST_CASE("A saved state goes on with the same bits on another number of threads", "[resume][threads]") {
     const Threads restored;
     const auto end = check_resume(slide(), 2.0, 1, 2);
     REQUIRE(end->flow().active.count() >= kTilesForThreads);  // or one thread does it all
     check_resume(slide(), 1.0, 2, 1);
 }
 
-TEST_CASE("A kept state goes on with the same bits whatever the scheme", "[resume]") {
+TEST_CASE("A saved state goes on with the same bits whatever the scheme", "[resume]") {
     const Threads restored;
     SECTION("the paper's choices") {
         check_resume(slide([](Scene& scene) { verify::set_preset(scene, "paper"); }), 1.5, 1, 1);

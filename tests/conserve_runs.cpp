@@ -168,7 +168,7 @@ TEST_CASE("A plane between walls has no curvature", "[conserve]") {
     CHECK(largest <= 1e-12);  // round-off of 500 m over 25 m^2
 }
 
-TEST_CASE("Stress at the rim of a stencil drives no node away from its points", "[conserve]") {
+TEST_CASE("Stress at the edge of a stencil drives no node away from its points", "[conserve]") {
     for (const Rheology& law : {Rheology{rheology::Bingham{2000, 50}}, Rheology{rheology::Newtonian{1e6}}}) {
         Scene scene = scene_on(80, 40, 2.0, [](double x, double) { return 100 - 0.5 * x; });
         scene.rheology = law;

@@ -27,7 +27,7 @@ std::vector<Vec3> by_id(const Mpm3d& flow, const SolidScene& scene) {
 
 }  // namespace
 
-TEST_CASE("Mass is exact in space, and momentum changes by what gravity and surfaces give", "[solid]") {
+TEST_CASE("Mass in 3D is exact, and momentum changes by what gravity and surfaces give", "[solid]") {
     for (const SolidLaw& law : all_solid_laws()) {
         CAPTURE(law.index());
         Mpm3d flow(lump(law));
@@ -41,7 +41,7 @@ TEST_CASE("Mass is exact in space, and momentum changes by what gravity and surf
     }
 }
 
-TEST_CASE("Points that keep their velocities keep mass and momentum too, and have the same bits for any threads",
+TEST_CASE("Points that retain their velocities conserve mass and momentum too, with the same bits for any threads",
           "[solid][threads]") {
     const int threads = omp_get_max_threads();
     for (const SolidLaw& law : all_solid_laws()) {
@@ -63,7 +63,7 @@ TEST_CASE("Points that keep their velocities keep mass and momentum too, and hav
     }
 }
 
-TEST_CASE("The ledger of energy in space has each loss under its name", "[solid]") {
+TEST_CASE("The 3D ledger of energy has each loss under its name", "[solid]") {
     const auto run = [](SolidScene s, double end) {
         Mpm3d flow(s);
         while (flow.status().time < end) flow.advance(end);
@@ -142,7 +142,7 @@ TEST_CASE("Tiles that work side by side do not meet, in a long corner", "[solid]
     CHECK(places[0] == places[2]);
 }
 
-TEST_CASE("Each surface is credited with what it gives: a rough floor's friction is not its wall's push", "[solid]") {
+TEST_CASE("Each surface is credited with what it gives: a rough floor's friction is not its wall's force", "[solid]") {
     // A block slides along a rough floor beside a smooth wall, which it never presses.
     SolidScene s;
     s.grid = {{-0.4, -0.4, -0.4}, 0.1, {31, 15, 15}};
@@ -222,7 +222,7 @@ TEST_CASE("No point is found behind a surface, and one that is not finite is tol
     }
 }
 
-TEST_CASE("A few points alone keep a ledger of numbers, wherever they lie between nodes", "[solid]") {
+TEST_CASE("A few points alone have a ledger of numbers, wherever they lie between nodes", "[solid]") {
     // Nodes that a point barely touches fly off. No lane without a point may take that for a strain of its own.
     for (const SolidLaw& law : all_solid_laws())
         for (const bool flip : {false, true}) {

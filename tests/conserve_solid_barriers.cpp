@@ -79,8 +79,7 @@ Index inside_barriers(const Mpm3d& flow) {
 
 }  // namespace
 
-TEST_CASE("Water at rest pushes a wall by rho g h^2 / 2, low down more than high up, along the grid and turned",
-          "[solid][barriers]") {
+TEST_CASE("The force of water at rest on a wall is rho g h^2 / 2, larger low down, also turned", "[solid][barriers]") {
     constexpr double kSpan = 0.2;  // s, from 0.15 on: over one period of its slowest sound, 4 H / c
     const double cell = 0.125, width = 3 * cell, height = 1.0;
     const double degrees = GENERATE(0.0, 20.0);
@@ -155,8 +154,7 @@ TEST_CASE("Two houses side by side take together what one barrier takes, half ea
     CHECK(pair.momentum_residual().norm() < 1e-12 * pair.status().weight_impulse.norm());
 }
 
-TEST_CASE("Not one point of a block of water that strikes a wall gets into it or through, however thin it is",
-          "[solid][barriers]") {
+TEST_CASE("Not one point of a block of water gets into a wall or through, however thin the wall", "[solid][barriers]") {
     struct Blow {
         double cells, speed;  ///< thickness of the wall; of the water [m/s], whose sound runs at 22 m/s
     };
@@ -182,7 +180,7 @@ TEST_CASE("Not one point of a block of water that strikes a wall gets into it or
     CHECK(flow.momentum_residual().norm() < 1e-12 * (start + flow.status().weight_impulse.norm()));
 }
 
-TEST_CASE("Water at rest in the inner corner of an angle stays quiet, and pushes both of its faces alike",
+TEST_CASE("Water at rest in the inner corner of an angle stays quiet, with equal forces on its faces",
           "[solid][barriers]") {
     const double cell = 0.125, side = 0.75, height = 0.5;
     const double degrees = GENERATE(0.0, 20.0);
@@ -206,8 +204,7 @@ TEST_CASE("Water at rest in the inner corner of an angle stays quiet, and pushes
     CHECK(flow.momentum_residual().norm() < 1e-12 * flow.status().weight_impulse.norm());
 }
 
-TEST_CASE("A blow on one side of a wall of the least thickness is not felt at all on the other side",
-          "[solid][barriers]") {
+TEST_CASE("A blow on one side of a wall of the least thickness is not felt on the other", "[solid][barriers]") {
     const double degrees = GENERATE(0.0, 20.0);
     const Turn turn{degrees};
     CAPTURE(degrees);
@@ -316,7 +313,7 @@ TEST_CASE("Flow around barriers has the same bits for any number of threads, led
     CHECK(kept[0] == kept[2]);
 }
 
-TEST_CASE("A cube as a field of distances is pushed like one with a footprint", "[solid][barriers]") {
+TEST_CASE("The force on a cube as a field of distances is that on one with a footprint", "[solid][barriers]") {
     const double cell = 0.1;
     SolidScene s = water({}, {0.8, 1.2, 0.6}, {2.4, 1.2, 1.2}, cell);
     const Vec3 low(1.2, 0.3, -1.0), high(1.8, 0.9, 0.5);

@@ -67,7 +67,7 @@ double total(const Field* field, Index from, Index to) {
 
 }  // namespace
 
-TEST_CASE("Columns that become points keep mass, momentum and energy, at once and later", "[stages]") {
+TEST_CASE("Columns that become points conserve mass, momentum and energy, at once and later", "[stages]") {
     const Scene scene = slide();
     StagedRun run(scene);
     const double mass = run.status().mass, momentum = run.status().momentum[0];
@@ -562,8 +562,7 @@ TEST_CASE("3D points begin with the same bits whatever the time between the fram
     for (const double every : {0.0031, 0.07}) CHECK((begun(every) == seldom));
 }
 
-TEST_CASE("A hand-over that is refused on the way ends the run as refused, and the last frame is of its step",
-          "[stages]") {
+TEST_CASE("A conversion refused on the way ends the run as refused, with the last frame of its step", "[stages]") {
     // Thin in front; what follows stands 3 m high, above the top over the window's edge at 17.1 m.
     Scene scene = slide();
     scene.particles = {};

@@ -46,7 +46,7 @@ TEST_CASE("A film at rest on a cliff of many cells begins with a step that it ca
     CHECK(fastest <= 1.25 * std::sqrt(2 * scene.gravity * 60.0));  // of the fall; a quarter: checks/fuzz/invariants.h
 }
 
-TEST_CASE("Where nothing is driven far, a step is what its signal asks for", "[conserve][steps]") {
+TEST_CASE("Where nothing is driven far, a step follows from its signal", "[conserve][steps]") {
     Scene scene = scene_on(40, 12, 1.0, [](double, double) { return 0.0; });
     fill(scene, [](double x, double) { return x < 20 ? 2.0 : 0.0; });
     DepthAveraged simulation(scene);
@@ -56,7 +56,7 @@ TEST_CASE("Where nothing is driven far, a step is what its signal asks for", "[c
           Approx(2 * reach / (c + std::sqrt(c * c + 2 * scene.gravity * reach))).epsilon(1e-14));
 }
 
-TEST_CASE("A step that is shortened ends at its time, and looking at the run changes nothing", "[conserve][steps]") {
+TEST_CASE("A step that is shortened ends at its time, and observing the run changes nothing", "[conserve][steps]") {
     DepthAveraged one(film_on_cliff()), other(film_on_cliff());
     run_to(one, 0.5);
     other.frame();
@@ -138,7 +138,7 @@ TEST_CASE("Viscosity gives lone columns of any transfer no energy", "[conserve][
     }
 }
 
-TEST_CASE("Between nodes the flow is what it is on them, linearly; the outer half pixel shows its rim",
+TEST_CASE("Between nodes the flow is what it is on them, linearly; the outer half pixel shows its edge",
           "[conserve][steps]") {
     // A sheet that falls with the bed: depth and velocity are the same on all its nodes.
     Scene scene = scene_on(24, 16, 2.0, [](double x, double y) { return 3.0 + 0.25 * x - 0.5 * y; });
@@ -176,7 +176,7 @@ TEST_CASE("A stop by gravity and friction together lets no difference of flip's 
     CHECK(fastest <= 0.01 * own);  // the thin depth's pressure
 }
 
-TEST_CASE("Points of flip that lie on opposite walls stay mirror images", "[conserve][flip]") {
+TEST_CASE("Points of flip that lie on opposite walls stay mirrored", "[conserve][flip]") {
     const double cell = 1.0 / 3.0, top = 28 * cell;  // top + 1e-19 is top, and 1e-19 is not zero
     Scene scene = scene_on(24, 29, cell, [](double, double) { return 0.0; });
     scene.sides = Sides::wall;

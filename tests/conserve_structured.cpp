@@ -31,7 +31,8 @@ StructuredScene breaking(double cohesion = 2e3) {
 
 }  // namespace
 
-TEST_CASE("A block that breaks keeps its mass, and its momentum is what it was given, to round-off", "[structured]") {
+TEST_CASE("A block that breaks conserves its mass, and its momentum is what it was given, to round-off",
+          "[structured]") {
     StructuredFlow flow(breaking());
     const double given = flow.status().momentum.norm();
     for (int step = 0; step < 300; ++step) flow.advance(10.0);
@@ -141,7 +142,7 @@ TEST_CASE("An obstacle's corner lets by what leaves it, and takes what enters by
     CHECK(box.met({2.0 + 1e-12, 0.5}, {-1.0, 0.0}, 1e-9) == Vec2(0.0, 0.0));  // the face itself
 }
 
-TEST_CASE("The open share of nodes beside walls is the integral of their shape functions", "[structured]") {
+TEST_CASE("The open share of nodes next to walls is the integral of their shape functions", "[structured]") {
     std::vector<Obstacle> walls(2);
     walls[0].high.x() = 0.0, walls[1].high.y() = 0.0;
     CHECK(open_share(walls, {0.0, 5.0}, 1.0, 0.0) == Approx(0.5).epsilon(1e-14));
@@ -152,7 +153,7 @@ TEST_CASE("The open share of nodes beside walls is the integral of their shape f
     CHECK(open_share(walls, {-5.0, 5.0}, 1.0, 0.25) == 0.25);
 }
 
-TEST_CASE("Grains push by Ka where they spread and towards Kp where they are squeezed, along principal axes",
+TEST_CASE("Pressure of grains is Ka where they spread and towards Kp where squeezed, along principal axes",
           "[structured]") {
     const Rankine k{1.0 / 3.0, 3.0};
     const Sym2 rest = earth_pressure({0, 0, 0}, 1.0, 9.81, k), spread = earth_pressure({1.0, 2.0, 0.0}, 1.0, 9.81, k),
@@ -180,7 +181,7 @@ TEST_CASE("Four hyperbolic tangents at once are the library's to round-off", "[s
     CHECK(worst < 3e-16);
 }
 
-TEST_CASE("What a step costs beside the depth-averaged flow's", "[.cost]") {
+TEST_CASE("What a step costs compared with the depth-averaged flow's", "[.cost]") {
     omp_set_num_threads(1);
     const auto cost = [](const char* what, double per, const verify::Measurement& m) {
         const double ns = 1e9 * m.wall_seconds / static_cast<double>(m.particles * m.steps);

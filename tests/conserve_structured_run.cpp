@@ -49,7 +49,7 @@ void go_to(Simulation& run, double time) {
 
 }  // namespace
 
-TEST_CASE("A run of a block keeps mass and momentum, and loses energy to what it records", "[structured]") {
+TEST_CASE("A run of a block conserves mass and momentum, and loses energy to what it records", "[structured]") {
     const Scene scene = sliding(600.0);
     const std::unique_ptr<Simulation> run = make_simulation(scene);
     const Status first = run->status();
@@ -313,7 +313,7 @@ TEST_CASE("Free water follows a bend of the bed: what it gains is what it falls"
     CHECK(straight > 0.2);
 }
 
-TEST_CASE("Grains pay for a bank as the depth-averaged flow does", "[structured]") {
+TEST_CASE("Grains pay for a step in the bed as the depth-averaged flow does", "[structured]") {
     // A bank of 1.6 m within four cells: the bed that is smoothed over 10 m hardly has its slope.
     Scene scene = scene_on(121, 31, 0.5, [](double x, double) { return std::clamp(0.8 * (x - 25.0), 0.0, 1.6); });
     scene.particles = {};
@@ -334,7 +334,7 @@ TEST_CASE("Grains pay for a bank as the depth-averaged flow does", "[structured]
     CHECK(grains == Approx(columns).epsilon(0.005));
 }
 
-TEST_CASE("A kept run of structured columns goes on with the same bits", "[structured]") {
+TEST_CASE("A saved run of structured columns goes on with the same bits", "[structured]") {
     const Scene scene = sliding(600.0);
     StructuredRun whole(scene);
     go_to(whole, 0.7);
@@ -461,7 +461,7 @@ Scene wet_slide() {
 
 }  // namespace
 
-TEST_CASE("Gauges of structured columns know the bed, dry and beside water, where material is and where not",
+TEST_CASE("Gauges of structured columns have the bed, dry and with water, with material and without",
           "[structured][mixture]") {
     const bool wet = GENERATE(false, true);
     const StructuredRun run(wet ? wet_slide() : sliding(600.0));
@@ -528,7 +528,7 @@ TEST_CASE("A run goes on while water flows, when the columns have left", "[struc
     CHECK(wet.water_budget()->solids_left == Approx(solids).epsilon(1e-12));
 }
 
-TEST_CASE("A run with water keeps mass and momentum of both, and its water's volume", "[structured][mixture]") {
+TEST_CASE("A run with water conserves mass and momentum of both, and its water's volume", "[structured][mixture]") {
     const Scene scene = wet_slide();
     StructuredRun run(scene);
     const Status first = run.status();
@@ -609,7 +609,7 @@ TEST_CASE("A lake over a heap of grains is level from the start", "[structured][
     CHECK(most > 0.6);  // the heap's 0.8 m, but for a fifth of free water in it
 }
 
-TEST_CASE("A kept run with water goes on with the same bits", "[structured][mixture]") {
+TEST_CASE("A saved run with water goes on with the same bits", "[structured][mixture]") {
     Scene scene = wet_slide();
     const bool viscous = GENERATE(false, true);
     if (viscous) {
@@ -631,7 +631,7 @@ TEST_CASE("A kept run with water goes on with the same bits", "[structured][mixt
     CHECK((whole.water()->status().ledger.sheared > 0.0) == viscous);
 }
 
-TEST_CASE("Columns beside ground without data stand on the ground that there is", "[structured]") {
+TEST_CASE("Columns next to ground without data stand on the ground that there is", "[structured]") {
     Scene scene = sliding();
     scene.bed = scene_on(81, 31, 0.5, [](double, double) { return 500.0; }).bed;
     scene.particles.vx.assign(scene.particles.x.size(), 0.0);

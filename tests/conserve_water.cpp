@@ -47,7 +47,7 @@ WaterScene heap_at(Index i0, Index j0) {
 
 }  // namespace
 
-TEST_CASE("Water keeps its volume, and its momentum is what it was given, to round-off", "[water][conserve]") {
+TEST_CASE("Water conserves its volume, and its momentum is what it was given, to round-off", "[water][conserve]") {
     WaterFlow flow(down_a_slope());
     double speed = 0.0;
     for (int step = 0; step < 500; ++step) {
@@ -230,7 +230,7 @@ TEST_CASE("Thin water on rough steep ground runs off, and gains no more than it 
     CHECK(flow.status().volume == Approx(flow.status().volume_given).epsilon(1e-13));
 }
 
-TEST_CASE("A cell that runs off on all sides keeps none and is not overdrawn", "[water][conserve]") {
+TEST_CASE("A cell that runs off on all sides retains none and is not overdrawn", "[water][conserve]") {
     WaterScene s;
     s.grid = verify::cells_over(40, 40, 1.0);
     // Beside a border of tiles.
@@ -315,7 +315,7 @@ double energy(const WaterFlow& flow) {
 
 }  // namespace
 
-TEST_CASE("A lake that goes on beyond open sides rests, and a push does not drain it", "[water][conserve]") {
+TEST_CASE("A lake that goes on beyond open sides rests, and an impulse does not drain it", "[water][conserve]") {
     WaterScene s = part_of_a_lake();
     {
         WaterFlow flow(s);
@@ -420,7 +420,7 @@ TEST_CASE("Water turns with its scene: x and y are alike", "[water][conserve]") 
     CHECK(a.status().ledger.left == Approx(b.status().ledger.left).epsilon(1e-9));
 }
 
-TEST_CASE("Viscous water keeps volume and momentum over rough ground, at walls and at open sides",
+TEST_CASE("Viscous water conserves volume and momentum over rough ground, at walls and at open sides",
           "[water][conserve]") {
     WaterScene s = down_a_slope();
     s.viscosity.kinematic = 0.02;
@@ -483,7 +483,7 @@ TEST_CASE("Viscosity leaves a lake at rest and even flow as it is", "[water][con
     CHECK(even.at(20, 15).u == Approx(2.0).epsilon(1e-12));  // 10 m from the wall, 30 lengths of diffusion
 }
 
-TEST_CASE("However viscous the water and however thin beside however deep, its step is stable", "[water][conserve]") {
+TEST_CASE("However viscous the water and however thin next to however deep, its step is stable", "[water][conserve]") {
     WaterScene s;
     s.grid = verify::cells_over(32, 32, 0.5);
     s.start = [](double x, double y) {
@@ -500,7 +500,7 @@ TEST_CASE("However viscous the water and however thin beside however deep, its s
     }
 }
 
-TEST_CASE("Slip along a gradient of the columns' share is sheared as eq. 30 has it, and only a bend of it moves water",
+TEST_CASE("Slip along a gradient of the columns' share is sheared by eq. 30; only a bend moves water",
           "[water][conserve]") {
     const double bend = -0.004, nu = 0.05, dt = 0.01, u = 0.7, v = 0.3;
     for (const int axis : {0, 1}) {
@@ -641,7 +641,7 @@ TEST_CASE("On coarse cells free water is as close to the exact answers as it was
     CHECK(run("water_shear", 12).l1_momentum < 2.7e-2);
 }
 
-TEST_CASE("What a step of water costs beside the depth-averaged flow's", "[.cost]") {
+TEST_CASE("What a step of water costs compared with the depth-averaged flow's", "[.cost]") {
     omp_set_num_threads(1);
     verify::Setup setup;
     setup.cells = 160;

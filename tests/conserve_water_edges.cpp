@@ -231,7 +231,7 @@ TEST_CASE("Water that runs from one roughness onto another has the normal depth 
     check("material.bed");
 }
 
-TEST_CASE("Roughness that all cells have changes no bit of the water, and that of zones none by threads or a new start",
+TEST_CASE("The same roughness in all cells changes no bit of the water; zones none by threads or a new start",
           "[water][zones][threads]") {
     WaterScene s;
     s.grid = verify::cells_over(64, 40, 2.0);
@@ -317,7 +317,7 @@ WaterScene over_a_bump(Index cells, double q) {
 
 }  // namespace
 
-TEST_CASE("Slow flow over a bump keeps its energy, and stands at its outlet's level there", "[water][conserve]") {
+TEST_CASE("Slow flow over a bump conserves its energy, and stands at its outlet's level there", "[water][conserve]") {
     const double q = 1.0;
     double last = 0.0;
     for (const Index cells : {40, 80}) {

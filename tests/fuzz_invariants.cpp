@@ -61,7 +61,7 @@ std::string broken_by(const Falsify& change) {
 
 }  // namespace
 
-TEST_CASE("A bed law that random scenes know nothing of gets the keys that it needs, within their ranges", "[stress]") {
+TEST_CASE("A bed law that random scenes do not have gets the keys that it needs, within their ranges", "[stress]") {
     for (const std::string& law : find_parameter("material.bed.law")->choices)
         for (std::uint64_t n = 0; n < 20; ++n) {
             Dice dice(7, n);
@@ -204,7 +204,7 @@ TEST_CASE("Scenes that once broke an invariant break none", "[stress]") {
     }
 }
 
-TEST_CASE("Mirror images that part by round-off that grows are told from those that the code parts", "[stress]") {
+TEST_CASE("Mirror images that part by growing round-off are told from those that the code parts", "[stress]") {
     const Draft streams = draw(20261, 622);
     const Verdict grown = examine(streams);
     CHECK_FALSE(grown.broken);

@@ -137,7 +137,7 @@ TEST_CASE("Models are named on the command line", "[stress]") {
     CHECK_THROWS_AS(models_of(""), UserError);
 }
 
-TEST_CASE("A sound run of every model breaks nothing, and is looked at for all that can break", "[stress]") {
+TEST_CASE("A sound run of every model breaks nothing, and is checked for all that can break", "[stress]") {
     for (const Model model : all_models()) {
         Draft draft = mound(model);
         draft.claims.threads = draft.claims.resumes = true;
@@ -223,7 +223,7 @@ TEST_CASE("Scenes of other models that once broke an invariant break none", "[st
     }
 }
 
-TEST_CASE("A campaign draws of the models that it is asked for, and tells the mix", "[stress]") {
+TEST_CASE("A campaign draws of the given models, and tells the mix", "[stress]") {
     Plan plan;
     plan.models = {Model::structured, Model::water};
     plan.seed = 3, plan.scenes = 12, plan.seconds = 1e9, plan.most_shrunk = 0;

@@ -1,5 +1,4 @@
-# Runs the case without frames as a user would: its pictures and tables are there, nothing failed, nothing else was
-# written.
+# Runs the case without frames as a user would. Its pictures and tables are there, nothing failed, nothing else was written.
 # cmake -DFRANA=... -DCASE=in_situ.toml -DOUT=dir -P in_situ_run.cmake
 file(REMOVE_RECURSE ${OUT})
 execute_process(COMMAND ${FRANA} run ${CASE} --out ${OUT} --until 8 --threads 1 --overwrite --quiet RESULT_VARIABLE result)

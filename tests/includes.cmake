@@ -1,5 +1,5 @@
-# The walls between the rooms. A room is a folder; it may include itself and the rooms that are named for it here, all
-# of them above its own line: no arrow runs back up. Each of these arrows is in use. Fails on any other include.
+# The walls between the rooms. A room is a folder. It may include itself and the rooms that are named for it here. All
+# of them are above its own line: no arrow runs back up. Each of these arrows is in use. Fails on any other include.
 # cmake -DROOT=... -P includes.cmake
 cmake_minimum_required(VERSION 3.22)
 set(packages "gdal|ogr|cpl_|proj|vtk|hdf5|H5|CLI/|nlohmann/|benchmark/|EGL/")

@@ -1,5 +1,5 @@
-# Installs what is built in BUILD and uses it as others would: the library by a project of its own (tests/installed), the
-# program away from its sources.
+# Installs what is built in BUILD and uses it as others would. A project of its own uses the library (tests/installed),
+# and the program runs away from its sources.
 #   cmake -DBUILD=... -DSOURCE=... -DOUT=... -DPROGRAM=ON|OFF -DVERSION=...
 #         -DCOMPILER=... -DFLAGS=... -DBUILD_TYPE=... [-DPYTHON=python3 -DPYTHON_DIR=...] -P installed.cmake
 set(prefix ${OUT}/prefix)
@@ -26,8 +26,8 @@ call("configure" ${CMAKE_COMMAND} -S ${SOURCE}/tests/installed -B ${OUT}/slide -
      -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_FLAGS=${FLAGS} -DCMAKE_BUILD_TYPE=Debug)
 call("build" ${CMAKE_COMMAND} --build ${OUT}/slide)
 call("slide" ${OUT}/slide/slide)
-# Without spreading the slab slides g (sin a - 0.3 cos a) cos a t^2 / 2 = 0.16 g t^2 / 2 = 7.06 m on the map in 3 s, a 1
-# in 2 slope. Its front spreads ahead of it by at most 2 sqrt(g h cos^2 a) t = 16.8 m.
+# On a 1 in 2 slope the slab without spreading slides g (sin a - 0.3 cos a) cos a t^2 / 2 = 0.16 g t^2 / 2 = 7.06 m on
+# the map in 3 s. Its front spreads ahead of it by at most 2 sqrt(g h cos^2 a) t = 16.8 m.
 if(NOT out MATCHES "mass 100000.000000 kg, runout ([0-9.]+) m")
   message(FATAL_ERROR "slide printed: ${out}")
 endif()
@@ -47,7 +47,7 @@ if(PROGRAM)
   if(NOT out MATCHES "${VERSION}" OR NOT out MATCHES "VTK [0-9]")
     message(FATAL_ERROR "frana --version printed: ${out}")
   endif()
-  # Every name that the module of vtk_io asks the program for is there, looked up at once instead of at the first call.
+  # Every name that the module of vtk_io needs of the program is there, resolved at once instead of at the first call.
   call("frana --version" ${CMAKE_COMMAND} -E env LD_BIND_NOW=1 ${away}/bin/frana --version)
   if(NOT out MATCHES "VTK [0-9]")
     message(FATAL_ERROR "frana --version printed, with all names looked up: ${out}")
@@ -78,7 +78,7 @@ print(frana.open('${OUT}/python/run').frames[-1].grid['depth'].max())")
       endif()
     endforeach()
   endif()
-  # The plugin for QGIS lies beside the program, and finds it from there.
+  # The plugin for QGIS lies next to the program, and finds it from there.
   find_program(python NAMES python3)
   if(python)
     call("the plugin for QGIS" ${CMAKE_COMMAND} -E env --unset=FRANA_PROGRAM PYTHONDONTWRITEBYTECODE=1

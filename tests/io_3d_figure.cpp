@@ -246,7 +246,7 @@ TEST_CASE("In ParaView a barrier stands from the ground to its top, however far 
     CHECK(least == Approx(-0.25).epsilon(1e-6));
 }
 
-TEST_CASE("Patches around a top that are not on it are not written, unless they were pushed", "[space]") {
+TEST_CASE("Patches around a top that are not on it are not written, unless they had a force", "[space]") {
     const FreshFolder folder;
     Frame frame;
     frame.status.time = 1.5;
@@ -266,7 +266,7 @@ TEST_CASE("Patches around a top that are not on it are not written, unless they 
     CHECK(faces->GetPointData()->GetArray("to_true_height")->GetNumberOfTuples() == faces->GetNumberOfPoints());
 }
 
-TEST_CASE("What pictures of a run share: the flow goes where it pushes, and the load is in the middle", "[space]") {
+TEST_CASE("What pictures of a run share: the flow's direction is its force's, and the load is central", "[space]") {
     Shared3d shared;
     Moment3d before = flow({20, 10, 10.2}, false);
     before.momentum = {0.0, 5.0, 0.0};
@@ -298,7 +298,7 @@ TEST_CASE("The picture of an impact comes as near as three heights of the wall",
     CHECK(close_view(all, flow({20, 10, 10.2}, false)).box == all.box);  // nothing stands there
 }
 
-TEST_CASE("The pressure on the wall is drawn beside the block and not over it", "[space]") {
+TEST_CASE("The pressure on the wall is drawn next to the block and not over it", "[space]") {
     if (cannot_draw()) return;
     const Colour pressed = colour_at(Colormap::pressure, 1.0);
     const Pixels picture = drawn(render_3d, figure_of(flow({24, 10, 10.2})));
@@ -347,7 +347,7 @@ TEST_CASE("The section shows the points near its plane at their heights, and no 
     CHECK(like(drawn(render_section, figure_of(flow({24, 13, 12.0}))), fast) == 0);
 }
 
-TEST_CASE("A point is as large as a cube of its volume, a column as wide as its volume and depth make it", "[space]") {
+TEST_CASE("A point is as large as a cube of its volume, a column as wide as its volume requires", "[space]") {
     LoadedParticles particles;
     particles.count = 4;
     particles.columns["position"].assign(12, 0.0);

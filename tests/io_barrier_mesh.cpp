@@ -112,7 +112,7 @@ TEST_CASE("A closed box in any of the formats gives its exact distances, whichev
     }
 }
 
-TEST_CASE("Around a sharp spike the field knows inside from outside", "[mesh]") {
+TEST_CASE("Around a sharp spike the field tells inside from outside", "[mesh]") {
     // Angles of 9 degrees at the tip: where the nearest place is an edge or the tip, single normals mislead.
     const Corners corners = {{0, 0, 0}, {0.3, 0, 0}, {0, 0.3, 0}, {0.1, 0.1, 2}};
     const Sides sides = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
@@ -237,7 +237,7 @@ TEST_CASE("A mesh that is no solid is refused with what was found and what to do
     refused(write_obj(folder / "millimetres.obj", large, kBox), "is it in metres?");
 }
 
-TEST_CASE("A sheet with two sides and nothing between them is refused, alone and beside a solid", "[mesh]") {
+TEST_CASE("A sheet with two sides and nothing between them is refused, alone and next to a solid", "[mesh]") {
     const Corners sheet = {{1, 2, 1}, {3, 2, 1}, {3, 4, 2}, {1, 4, 2}};
     const Sides two_sides = {{0, 1, 2}, {0, 2, 3}, {3, 1, 0}, {3, 2, 1}};
     Corners both = sheet;

@@ -149,7 +149,7 @@ TEST_CASE("a checkpoint with any flipped bit is refused with one sentence", "[re
     CHECK_THAT(complaint(file), Contains("has a format that this version does not know"));
 }
 
-TEST_CASE("a checkpoint that is not there, or lacks what is asked of it, is refused", "[resume]") {
+TEST_CASE("a checkpoint that is not there, or lacks an entry, is refused", "[resume]") {
     const FreshFolder folder;
     const fs::path file = folder.path() / "checkpoint.h5";
     CHECK_THAT(complaint(file), Contains("checkpoint.h5: not found; expected the state that a run keeps there; run "

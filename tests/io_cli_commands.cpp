@@ -136,7 +136,7 @@ TEST_CASE("check and run refuse 3D points that no memory holds", "[cli]") {
     }
 }
 
-TEST_CASE("An in-situ entry that cannot work is refused before the run folder is touched", "[cli][insitu]") {
+TEST_CASE("An in-situ entry that cannot work is refused before the run folder is changed", "[cli][insitu]") {
     const PlaneCase scene;
     const std::string name = scene.file().string();
     const auto refused = [&](const std::string& rest, const std::string& sentence) {
@@ -213,7 +213,7 @@ TEST_CASE("check lists all problems of a bad case on stderr and is not ready", "
               "range\n3 problems\n");
 }
 
-TEST_CASE("particles writes every format, with the count asked for", "[cli]") {
+TEST_CASE("particles writes every format, with the given count", "[cli]") {
     const PlaneCase scene;
     for (const char* name : {"p.csv", "p.json", "p.h5", "deep/p.vtp"}) {
         CAPTURE(name);

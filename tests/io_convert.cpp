@@ -240,8 +240,7 @@ TEST_CASE("A damaged frame is named, and nothing is written", "[convert]") {
     CHECK_FALSE(fs::exists(finished_run().folder() / "d.csv"));
 }
 
-TEST_CASE("Of a run with free water the points are of its grains alone, and the water that is left out is said",
-          "[convert]") {
+TEST_CASE("With free water the points are of the grains alone, and the water left out is told", "[convert]") {
     const PlaneCase scene;
     scene.write(
         "[material]\ndensity = 2650\n[material.structure]\nlaw = \"drucker_prager\"\ncohesion = 0\nfraction = 0\n"

@@ -85,8 +85,7 @@ TEST_CASE("What a slide leaves on rock is in the rasters, the record and the rep
     CHECK_THAT(text_of(dir / "report.md"), Contains("| became bed |"));
 }
 
-TEST_CASE("What lies there at the end, as flow or as bed, is one raster, and each number of a depth says which it is",
-          "[program][deposition]") {
+TEST_CASE("What lies at the end, as flow or bed, is one raster, and numbers say which depth", "[program][deposition]") {
     const Slide slide;
     const fs::path dir = slide.run("run", "--set 'output.formats=[\"vtk\",\"geotiff\",\"png\"]'");
     const Raster lying = raster_of(dir, "lying_depth.tif"), flow = raster_of(dir, "final_depth.tif"),
@@ -173,7 +172,7 @@ TEST_CASE("A run that stops while it takes up its bed goes on to the same raster
     }
 }
 
-TEST_CASE("On rough ground the bed at the end is the terrain and its change, and the terrain where it does not follow",
+TEST_CASE("On rough ground the final bed is terrain and change, and the terrain where it does not follow",
           "[program][deposition]") {
     const Slide slide("[erodible]\ndepth = 0.4\nlaw = \"growth\"\ngrowth = 0.02\n");
     std::ostringstream rough;

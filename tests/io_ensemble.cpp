@@ -125,7 +125,7 @@ TEST_CASE("an ensemble has the same bytes on any number of threads, in shards, a
     CHECK(whole(pond.path("killed")) == expected);
 }
 
-TEST_CASE("a disk that fills up ends an ensemble with one sentence, and what it kept goes on", "[ensemble]") {
+TEST_CASE("a disk that fills up ends an ensemble with one sentence, and what it stored goes on", "[ensemble]") {
     const Pond pond;
     pond.write("many.toml", of_samples(300));
     const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "frana";

@@ -158,7 +158,7 @@ TEST_CASE("Classes of hazard are a raster with colours and names, and areas in r
     CHECK(band.GetNoDataValue() == 0.0);
 }
 
-TEST_CASE("A scenario without an answer is told with the classes of hazard, and classes nobody asks for any more go",
+TEST_CASE("A scenario without an answer is told with the classes of hazard, and classes not requested any more go",
           "[ensemble][hazard]") {
     const Pond pond;
     const std::string many =

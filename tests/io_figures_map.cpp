@@ -63,7 +63,7 @@ double resident_megabytes() {
 
 }  // namespace
 
-TEST_CASE("A map has the size asked for, and the deposit lies north and east where it is", "[figures]") {
+TEST_CASE("A map has the requested size, and the deposit lies north and east where it is", "[figures]") {
     if (cannot_draw()) return;
     MapFigure figure = figures::valley();
     const Pixels picture = drawn(figure);
@@ -100,7 +100,7 @@ TEST_CASE("The colour at a map position is that of the value there", "[figures]"
     CHECK(brightness(at(picture, dry)) > 0.35);
 }
 
-TEST_CASE("The colour bar runs from the first to the last colour beside the map", "[figures]") {
+TEST_CASE("The colour bar runs from the first to the last colour next to the map", "[figures]") {
     if (cannot_draw()) return;
     const MapFigure figure = figures::valley();
     const Pixels picture = drawn(figure);
@@ -160,7 +160,7 @@ TEST_CASE("Barriers are drawn on their lines, and a few of them by name", "[figu
     CHECK(named > white_at_name(figure) + 100);
 }
 
-TEST_CASE("No name stands on a house beside another", "[figures]") {
+TEST_CASE("No name stands on an adjacent house", "[figures]") {
     if (cannot_draw()) return;
     MapFigure figure = figures::valley();
     const auto house = [](double x, double y) {

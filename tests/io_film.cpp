@@ -114,7 +114,7 @@ TEST_CASE("an ffmpeg that fails is quoted, and nothing is left of the film", "[f
     CHECK(fs::is_empty(folder.path()));
 }
 
-TEST_CASE("a run makes the film it was asked for", "[film]") {
+TEST_CASE("a run makes its film", "[film]") {
     if (cannot_film()) return;
     const FreshFolder folder, plain;
     const RunRecord record = run_with_film(folder.path());

@@ -99,7 +99,7 @@ TEST_CASE("A plane stays a plane under every cell size and window", "[gdal]") {
         }
 }
 
-TEST_CASE("Cells of whole pixels hold the plain mean, and the volume under any terrain is kept", "[gdal]") {
+TEST_CASE("Cells of whole pixels hold the plain mean, and the volume under any terrain is conserved", "[gdal]") {
     const FreshFolder folder;
     RasterSpec spec = plane_spec();
     spec.value = [](int column, int row) { return 1000.0 + (column * 7919 + row * 104729) % 97; };

@@ -73,7 +73,7 @@ TEST_CASE("A field of pixels that are not square is refused with a gdalwarp that
     CHECK(read("depth_square.tif").geometry.cell == 8.0);
 }
 
-TEST_CASE("A depth on coarser, equal or shifted cells keeps its volume, and is nowhere negative", "[gdal]") {
+TEST_CASE("A depth on coarser, equal or shifted cells conserves its volume, and is nowhere negative", "[gdal]") {
     const FreshFolder folder;
     RasterSpec spec = hump();
     spec.rows = 9;  // dry pixels all around, so that no cell at the rim is cut off with material in it

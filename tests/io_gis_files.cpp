@@ -193,7 +193,7 @@ TEST_CASE("A resumed run leaves the same bytes for a GIS; SOURCE_DATE_EPOCH date
     CHECK(text_of(straight / "run.qgz") == text_of(parts / "run.qgz"));
 }
 
-TEST_CASE("The project names each of its layers by a path beside it, and what it needs is there", "[gis]") {
+TEST_CASE("The project names each of its layers by a relative path, and what it needs is there", "[gis]") {
     const Slope slope;
     const fs::path run = slope.run("run");
     const std::string text = project_text(run);

@@ -98,7 +98,7 @@ void check_within(double value, const std::array<double, 3>& codes, const char* 
 }  // namespace
 
 // The front within two cells of the codes' median; the rest within their least and largest.
-TEST_CASE("On ISeeSnow's track the flow ends beside the median of twelve codes, with and without drag", "[real]") {
+TEST_CASE("On ISeeSnow's track the flow ends near the median of twelve codes, with and without drag", "[real]") {
     for (const auto& [name, law] : {std::pair{"iseesnow_coulomb", R"({ law = "coulomb", mu = 0.4 })"},
                                     std::pair{"iseesnow_idealized", R"({ law = "voellmy", mu = 0.4, xi = 2000.0 })"}}) {
         const auto folder = shared_data(name);

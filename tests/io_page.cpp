@@ -173,7 +173,7 @@ TEST_CASE("Frames that are too many thin out evenly, and a resumed run has the s
     }
 }
 
-TEST_CASE("A page holds any title, asks for nothing, and says that nothing flowed", "[page]") {
+TEST_CASE("A page holds any title, loads nothing, and says that nothing flowed", "[page]") {
     WebPage page;
     page.title = title;
     page.bed = hill();

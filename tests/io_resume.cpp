@@ -329,7 +329,7 @@ TEST_CASE("Ctrl-C, SIGTERM, SIGHUP and SIGPIPE leave a state to go on from, and 
     check_same_files(folder.out(), folder.path() / "whole");
 }
 
-TEST_CASE("a disk that is full while a state is kept leaves the earlier one, and the run goes on", "[resume]") {
+TEST_CASE("a disk that is full while a state is saved leaves the earlier one, and the run goes on", "[resume]") {
     const FreshFolder folder;
     FakeSimulation simulation;
     Scene scene = fake_scene(simulation);

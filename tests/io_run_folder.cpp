@@ -90,7 +90,7 @@ TEST_CASE("a folder with a run's files is refused unless they may be overwritten
     CHECK_FALSE(fs::exists(folder.path() / "history.csv"));
 }
 
-TEST_CASE("a file that no run made is not replaced, whatever is asked for") {
+TEST_CASE("a file that no run made is not replaced, whatever the options") {
     const FreshFolder folder;
     for (const char* name : {"case.toml", "footprint.geojson", "rasters/peak_depth.tif"}) {
         touch(folder.path() / name);

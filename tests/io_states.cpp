@@ -277,7 +277,7 @@ TEST_CASE("states written again after a move name the files where they lie now")
     CHECK(!fs::exists(moved / "states" / "profiles.pvsm"));
 }
 
-TEST_CASE("the look of an impact has its time, the points' size and a camera on it", "[states]") {
+TEST_CASE("the states of an impact have its time, the points' size and a camera on it", "[states]") {
     const Json look = Json::parse(text_of(impact_run() / "states" / "look.json"));
     REQUIRE(look["states"]["impact"] == "");
     const std::vector<double> times = barrier_times(impact_run());
@@ -308,7 +308,7 @@ TEST_CASE("the look of an impact has its time, the points' size and a camera on 
     CHECK(fs::exists(impact_run() / "states" / "impact.pvsm"));
 }
 
-TEST_CASE("the look of a profile draws depths a round number of times larger, up to a fifth of its relief",
+TEST_CASE("the states of a profile draw depths a round number of times larger, within a fifth of its relief",
           "[states]") {
     const Json look = Json::parse(text_of(full_run() / "states" / "look.json"));
     const ProfileShape shape = profile_shape(full_run());

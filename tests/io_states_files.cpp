@@ -83,7 +83,7 @@ TEST_CASE("the survey's pixels are what they are: in both, simulated only, surve
     }
 }
 
-TEST_CASE("the survey's outlines are closed, on the terrain, and leave out what lies beside it") {
+TEST_CASE("the survey's outlines are closed, on the terrain, and leave out what lies outside of it") {
     const FreshFolder folder;
     const Raster bed = plane();
     Raster depth = bed;

@@ -106,7 +106,7 @@ TEST_CASE("A survey in degrees has the area on the map that it had before", "[su
     }
 }
 
-TEST_CASE("Holes and parts of a survey are kept, and overlapping polygons count once", "[survey]") {
+TEST_CASE("Holes and parts of a survey remain, and overlapping polygons count once", "[survey]") {
     const Files files;
     std::vector<std::string> log;
     const fs::path file = files.text(
@@ -154,7 +154,7 @@ TEST_CASE("A raster above 0 is a survey too, hole and all, in its own CRS or ano
     CHECK(area_of(rings_of(elsewhere)) == Approx(7900.0 * 1.003).epsilon(1e-3));
 }
 
-TEST_CASE("A survey that reaches outside the terrain is kept whole", "[survey]") {
+TEST_CASE("A survey that reaches outside the terrain remains whole", "[survey]") {
     const Files files;
     std::vector<std::string> log;
     const fs::path file =
@@ -210,7 +210,7 @@ TEST_CASE("The line that a refusal gives makes the survey readable", "[survey]")
     CHECK(area_of(rings_of(read(files / "nowhere_crs.tif", wkt_of("EPSG:32632"), log))) == Approx(7900).epsilon(1e-12));
 }
 
-TEST_CASE("A surveyed deposit keeps its volume beyond the terrain, on the run's pixels", "[survey]") {
+TEST_CASE("A surveyed deposit conserves its volume beyond the terrain, on the run's pixels", "[survey]") {
     const Files files;
     RasterSpec spec;
     spec.columns = 20;

@@ -100,7 +100,7 @@ TEST_CASE("Warm steps among trees allocate nothing", "[speed][forest]") {
     CHECK(simulation.status().bed.deposited > before);
 }
 
-TEST_CASE("Warm steps in space allocate nothing", "[speed][solid]") {
+TEST_CASE("Warm steps in 3D allocate nothing", "[speed][solid]") {
     Mpm3d flow(lump(solid::Bingham{4e5, 1e5, 10.0, 500.0}));
     for (int step = 0; step < 10; ++step) flow.advance(1e9);
     const long before = allocations;

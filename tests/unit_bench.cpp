@@ -47,7 +47,7 @@ std::size_t occurrences(const std::string& text, const std::string& word) {
 
 }  // namespace
 
-TEST_CASE("A blob has as many points as it should, on the same tiles of a tight and of a wide grid", "[bench]") {
+TEST_CASE("A blob has as many points as it should, on the same tiles of tight and wide grids", "[bench]") {
     bench::Blob blob;
     blob.particles = 3001;
     const Scene tight = bench::blob_scene(blob);

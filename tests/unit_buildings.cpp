@@ -60,7 +60,7 @@ Scene stream(const std::vector<Barrier>& houses) {
 
 }  // namespace
 
-TEST_CASE("Columns alone may have hundreds of barriers, points in space may not", "[scene][barriers]") {
+TEST_CASE("Columns alone may have hundreds of barriers, 3D points may not", "[scene][barriers]") {
     FakeGis gis = slope_gis();
     gis.polygons["houses.gpkg"] = village(64, 12, 17);
     CHECK(scene_of(with_houses("height = 6\neach = true\n"), gis).barriers.size() == 64);

@@ -64,7 +64,7 @@ TEST_CASE("Extents apart share nothing, though their areas are the same") {
     CHECK(areas.symmetric_difference_percent() == exactly(200));
 }
 
-TEST_CASE("A square of 100 m moved by 20 m has IoU 2/3, and its outlines lie 10 m apart in the mean") {
+TEST_CASE("A square of 100 m moved by 20 m has IoU 2/3 and outlines 10 m apart on average") {
     const Raster depth = flooded(20, 30, 120, 130);
     const Rings survey = survey_of({Polygon{{box(40, 30, 140, 130)}}});
     const Overlap areas = overlap(depth, 0.1, survey);

@@ -55,7 +55,7 @@ TEST_CASE("On a plane the steepest path runs straight down to the edge") {
     CHECK(length_of(path) == Approx(520));
 }
 
-TEST_CASE("The steepest path leaves a hollow over its lowest rim, and does not run on for ever") {
+TEST_CASE("The steepest path leaves a hollow over its lowest edge, and does not run on for ever") {
     // a trough with a dam across it at x = 300 m, with a gap in its north that is lower than the trough's sides
     const Raster bed = made([](double x, double y) {
         const bool dam = std::abs(x - 300.0) < 12.0 && y < 150.0;

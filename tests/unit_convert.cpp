@@ -127,7 +127,8 @@ TEST_CASE("The layers' energy factor goes to the exact one: second order in cent
               Approx(4.0 / 3.0 - 1.0 / (3.0 * static_cast<double>(count * count))).epsilon(1e-14));
 }
 
-TEST_CASE("Mass, volume and horizontal momentum are kept in total and per column, whatever is chosen", "[convert]") {
+TEST_CASE("Mass, volume and horizontal momentum are conserved in total and per column, whatever is chosen",
+          "[convert]") {
     const Raster bed = tilted_bed(30, 2.0);
     const FlowColumns columns = uneven_flow(bed, 1300.0, 9.81);
     for (const VelocityProfile profile : kProfiles)
@@ -175,7 +176,7 @@ TEST_CASE("The kinetic energy of the converted flow is that of the profile", "[c
     }
 }
 
-TEST_CASE("A plane bed has one gradient everywhere, also at its rim and beside unknown nodes", "[convert][nan]") {
+TEST_CASE("A plane bed has one gradient everywhere, also at its edge and next to unknown nodes", "[convert][nan]") {
     Raster bed = tilted_bed(6, 2.0);
     bed.at(3, 3) = Raster::nodata;
     const GridGeometry& g = bed.geometry;

@@ -24,7 +24,7 @@ std::string problem_of(const std::string& more) {
 
 }  // namespace
 
-TEST_CASE("Deposition is asked for by its law and has a time", "[deposition][scene]") {
+TEST_CASE("Deposition is chosen by its law and has a time", "[deposition][scene]") {
     CHECK_FALSE(scene_of("").deposition);
     CHECK_FALSE(scene_of("law = \"none\"\n").deposition);
     CHECK(scene_of("law = \"rest\"\n").deposition.value().rest == 10.0);

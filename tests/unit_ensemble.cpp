@@ -88,7 +88,7 @@ TEST_CASE("Latin hypercube samples hit each slice of each key once", "[ensemble]
     CHECK(column(make_design(Method::lhs, 50, 3, 8), 0) != column(design, 0));
 }
 
-TEST_CASE("Sobol samples fill slices evenly and stay when more are asked for", "[ensemble]") {
+TEST_CASE("Sobol samples fill slices evenly and stay when more are added", "[ensemble]") {
     const Design design = make_design(Method::sobol, 128, 4, 3), half = make_design(Method::sobol, 64, 4, 3);
     for (std::size_t key = 0; key < 4; ++key) {
         CHECK(in_slices(column(design, key), 128) == std::vector<int>(128, 1));
@@ -184,7 +184,7 @@ TEST_CASE("A key without a range has the prior of the kind of mass, and says so"
     CHECK(file.read(vary("material.bed.mu")).vary.at(0).distribution.kind == Distribution::Kind::uniform);
 }
 
-TEST_CASE("What an ensemble's file cannot ask for is said in one sentence each", "[ensemble]") {
+TEST_CASE("What an ensemble's file cannot have is told in one sentence each", "[ensemble]") {
     const EnsembleFile file;
     CHECK_THAT(file.complaint(head), Contains("ensemble.vary: found no [[ensemble.vary]]"));
     CHECK_THAT(file.complaint(head + "sample = 3\n" + mu),

@@ -83,7 +83,7 @@ TEST_CASE("What is wrong with [erodible] is said in one sentence", "[erosion][sc
               "without any of the terrain; expected some of its x "));
 }
 
-TEST_CASE("What ploughs has to know where its layer lies", "[erosion][scene]") {
+TEST_CASE("What ploughs needs the place of its layer", "[erosion][scene]") {
     FakeGis gis = slope_gis();
     gis.polygons["gully.geojson"] = rectangle(1040, 2020, 1060, 2037.5);
     gis.rasters["loose.tif"] = sampled(gis.rasters["dem.tif"].geometry, [](double, double) { return 1.0; });
@@ -96,7 +96,7 @@ TEST_CASE("What ploughs has to know where its layer lies", "[erosion][scene]") {
             scene_of(gis, std::string("law = \"front\"\n") + known).erodible->law));
 }
 
-TEST_CASE("Loose ground that looks like a mistake, or lies outside, is a remark", "[erosion][scene]") {
+TEST_CASE("Loose ground that seems to be a mistake, or lies outside, is a remark", "[erosion][scene]") {
     FakeGis gis = slope_gis();
     gis.polygons["half.geojson"] = rectangle(990, 2010, 1010, 2030);
     const Scene scene = scene_of(gis, "law = \"jump\"\ndepth = 60\noutline = \"half.geojson\"\n");

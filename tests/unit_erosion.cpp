@@ -109,7 +109,7 @@ TEST_CASE("A bed without anything loose changes no bit of a run", "[erosion]") {
     CHECK(bare.status().potential == rock.status().potential);
 }
 
-TEST_CASE("Loose ground beside a flow that does not reach it changes no bit of a run", "[erosion]") {
+TEST_CASE("Loose ground next to a flow that does not reach it changes no bit of a run", "[erosion]") {
     const ErosionLaw law = GENERATE(from_range(std::begin(kLaws), std::end(kLaws)));
     CAPTURE(law.index());
     DepthAveraged rock(slide([](Scene& s) { s.erodible.reset(), s.scheme.cfl = 0.5; }));

@@ -101,7 +101,7 @@ TEST_CASE("Where the bed falls away faster than what flies would, a flow keeps i
         }
 }
 
-TEST_CASE("A bank that only the raw bed has gives no speed to a flow that would fly", "[grid_update]") {
+TEST_CASE("A step in the bed that only the raw bed has gives no speed to a flow that would fly", "[grid_update]") {
     // A ramp of 1 m/m over three cells of 2 m on a crest that bends by 0.02 1/m; smoothed over 40 m it is next to nothing.
     Scene scene = verify::scene_on(41, 31, 2.0, [](double x, double) {
         return std::min(std::max(x - 38.0, 0.0), 6.0) - 0.01 * (x - 40.0) * (x - 40.0);
@@ -158,7 +158,7 @@ TEST_CASE("A climb costs what it lifts where the bed is sharper than its smoothe
     CHECK(still == 0.0);
 }
 
-TEST_CASE("What a bank stops stands still, whichever way the bank rises", "[grid_update]") {
+TEST_CASE("What a step in the bed stops stands still, whichever way the step rises", "[grid_update]") {
     // Along the rise, too slow for a step's climb; what round-off left would have a direction of its own.
     int moving = 0;
     for (int n = 0; n < 100; ++n) {

@@ -76,7 +76,7 @@ TEST_CASE("A hollow cone has the curvature of its contours, whatever the directi
     }
 }
 
-TEST_CASE("Nodata does not bend the ground beside it", "[scene]") {
+TEST_CASE("Nodata does not bend the adjacent ground", "[scene]") {
     Raster bed = terrain([](double x, double y) { return 2000.0 - 0.5 * x + 0.1 * y; });
     for (Index i = 18; i < 23; ++i) bed.at(i, 15) = Raster::nodata;
     check_all(bed, kOpen);

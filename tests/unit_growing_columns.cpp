@@ -77,8 +77,7 @@ TEST_CASE("Growing changes a run by round-off only", "[terrain]") {
     CHECK(part.status().mass == Approx(all.status().mass).epsilon(1e-13));
 }
 
-TEST_CASE("A part that grows onto holes of the terrain holds all of it, and its walls are those of a run on all of it",
-          "[terrain][holes]") {
+TEST_CASE("A part that grows onto holes holds all of the terrain, with the walls of such a run", "[terrain][holes]") {
     // A hole across the flow's way, west of the part that it begins with, and one row of outside at the terrain's edge.
     const auto with_holes = [](Raster bed) {
         const GridGeometry& g = bed.geometry;
@@ -157,7 +156,7 @@ TEST_CASE("Frames of a part show what the flow has reached, and places that are 
     CHECK(shown.grid.y0 <= 900.0);
 }
 
-TEST_CASE("A run on a part goes on from a kept state with the same bits, before and after it has grown", "[terrain]") {
+TEST_CASE("A run on a part goes on from a saved state with the same bits, grown or not", "[terrain]") {
     GrowingColumns run(slide_on_large());
     const NodeBox begin = run.held();
     for (const bool grown : {false, true}) {
@@ -172,7 +171,7 @@ TEST_CASE("A run on a part goes on from a kept state with the same bits, before 
     }
 }
 
-TEST_CASE("What may split is kept with a part that has grown", "[terrain]") {
+TEST_CASE("What may split is saved with a part that has grown", "[terrain]") {
     const auto slide = [](double least) {
         Scene scene = slide_on_large();
         scene.scheme.split_min_mass = least;
@@ -206,9 +205,8 @@ TEST_CASE("A run on a part comes back to a state that was put aside, also just b
     require_same(run, other);
 }
 
-TEST_CASE(
-    "A part of a terrain has the corners of a thick wall that turns, and what is off the terrain is told of all of it",
-    "[terrain][barrier]") {
+TEST_CASE("A part of a terrain has a thick wall's corners, and what is off is told of the whole",
+          "[terrain][barrier]") {
     const GridGeometry all{3000, 60, 2.5, 2.5, 5.0};
     LargeGis gis(all);
     gis.polygons["release.geojson"] = rectangle(1000, 100, 1040, 140);

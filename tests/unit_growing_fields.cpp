@@ -144,8 +144,7 @@ TEST_CASE("Fields of a part that grows: the same bits whatever lies beyond, and 
     }
 }
 
-TEST_CASE("Fields of a part that grows are those of a run on all of the terrain, and so is what came of them",
-          "[terrain][erosion]") {
+TEST_CASE("Fields of a part that grows are those of a run on all of the terrain, results too", "[terrain][erosion]") {
     for (const Named& field : kAll) {
         INFO(field.name);
         GrowingColumns part(with(slide_on_large(), field.edit));
@@ -192,7 +191,7 @@ TEST_CASE("Fields of a part that grows are those of a run on all of the terrain,
     }
 }
 
-TEST_CASE("A part of a terrain has the friction, the loose ground and the trees of the case, there and farther on",
+TEST_CASE("A part of a terrain has the case's friction, loose ground and trees, there and farther on",
           "[terrain][zones]") {
     const GisOfFields gis;
     const std::string bed = "bed = { law = \"coulomb\", mu = \"mu.tif\" }\n";

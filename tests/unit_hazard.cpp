@@ -132,8 +132,7 @@ TEST_CASE("Runs of one event give each strength the return period of the event o
     CHECK(classes(0, 0, 3) == 0);
 }
 
-TEST_CASE("A file asks for a table of hazard, by a preset or its own, and what is wrong is said",
-          "[ensemble][hazard]") {
+TEST_CASE("A file gives a table of hazard, by a preset or its own, and what is wrong is told", "[ensemble][hazard]") {
     const std::string own =
         "[ensemble.hazard]\nyears = [30]\n[[ensemble.hazard.class]]\nname = \"blue\"\ncolour = \"#0000ff\"\n"
         "[[ensemble.hazard.level]]\nname = \"deep\"\npeak_depth = 1.0\nclasses = [\"blue\", \"none\"]\n";

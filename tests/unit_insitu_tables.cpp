@@ -74,11 +74,11 @@ struct SmallFrame {
 
 }  // namespace
 
-TEST_CASE("Without times of its own, in-situ looks at every output", "[insitu]") {
+TEST_CASE("Without times of its own, in-situ samples at every output", "[insitu]") {
     CHECK(looks({}) == std::vector<double>{0.0, 0.5, 1.0});
 }
 
-TEST_CASE("A time interval looks at the first state at or past each multiple, and at the end", "[insitu]") {
+TEST_CASE("A time interval samples the first state at or past each multiple, and at the end", "[insitu]") {
     // 0.03 s a step from 0, cut at the outputs: 0.21 and 0.42 are the first past 0.2 and 0.4; after 0.5 come 0.62, 0.80
     const std::vector<double> seen = looks({0.2, {}});
     REQUIRE(seen.size() == 6);
@@ -88,7 +88,7 @@ TEST_CASE("A time interval looks at the first state at or past each multiple, an
     CHECK(looks({0.9, {}}).size() == 3);  // the start, just past 0.9 s, the end
 }
 
-TEST_CASE("A number of steps looks that often, and at the end", "[insitu]") {
+TEST_CASE("A number of steps samples that often, and at the end", "[insitu]") {
     const std::vector<double> seen = looks({{}, 10});  // 17 + 17 steps
     REQUIRE(seen.size() == 5);
     CHECK(seen[1] == Approx(0.3).epsilon(1e-12));

@@ -21,8 +21,7 @@ Scene stream(double shear, double drag) {
 
 }  // namespace
 
-TEST_CASE("The lateral drag at a node is that of its faces, and takes momentum from one side as it gives to the other",
-          "[lateral]") {
+TEST_CASE("The lateral drag at a node is its faces', and takes momentum from one side to the other", "[lateral]") {
     const double drag = 0.7, dt = 0.05, cell = 2.0;
     Scene scene = scene_on(41, 41, cell, [](double, double) { return 0.0; });
     scene.scheme.lateral_drag = drag;

@@ -99,7 +99,7 @@ TEST_CASE("a run that goes on from any of its states leaves what the whole run l
     }
 }
 
-TEST_CASE("a run that goes on knows how far the front once was", "[resume]") {
+TEST_CASE("a resumed run has the farthest front so far", "[resume]") {
     const RunPlan plan{1.05, 0.25, false};
     const FreshFolder whole_folder, folder;
     FakeScript script;
@@ -112,7 +112,7 @@ TEST_CASE("a run that goes on knows how far the front once was", "[resume]") {
     check_same(run_in(folder, plan, later, script), whole);
 }
 
-TEST_CASE("an interrupted run keeps its state before its last frame, and goes on without that frame", "[resume]") {
+TEST_CASE("an interrupted run saves its state before its last frame, and goes on without that frame", "[resume]") {
     const RunPlan plan{1.05, 0.25, false};
     const FreshFolder whole_folder, folder;
     MemoryKeeper unused, keeper(false), later(false);
@@ -130,7 +130,8 @@ TEST_CASE("an interrupted run keeps its state before its last frame, and goes on
     check_same(run_in(folder, plan, later), whole);
 }
 
-TEST_CASE("an interrupt is heard between outputs that one step passes, and who goes on shows the others", "[resume]") {
+TEST_CASE("an interrupt is heard between outputs that one step passes, and the resumed run shows the others",
+          "[resume]") {
     const RunPlan plan{1.05, 0.01, false};
     const FreshFolder whole_folder, folder;
     MemoryKeeper unused, keeper(false), later(false);
@@ -167,7 +168,7 @@ TEST_CASE("a run that was cut short goes on as if it had not been", "[resume]") 
     check_same(run_in(folder, {1.05, 0.25, false}, later), whole);
 }
 
-TEST_CASE("a state past the end that is asked for is refused", "[resume]") {
+TEST_CASE("a state past the requested end is refused", "[resume]") {
     const FreshFolder folder;
     MemoryKeeper keeper(false), later;
     run_in(folder, {1.0, 0.25, false}, keeper);

@@ -71,7 +71,7 @@ TEST_CASE("frames fall on exact multiples of the output interval, and on the end
     CHECK(outcome.summary.frames == 11);
 }
 
-TEST_CASE("an end that is no multiple of the interval gets a frame of its own, a multiple gets no second one") {
+TEST_CASE("an end that is no multiple of the interval gets its own frame, a multiple no second one") {
     CHECK(run_fake({}, {0.25, 0.1, false}).notes.frame_times == std::vector<double>{0.0, 0.1, 0.2, 0.25});
     // k * 0.1 may fall a rounding error beside k / 10.0: never two frames there
     for (int k = 1; k <= 60; ++k) {
@@ -202,7 +202,7 @@ TEST_CASE("budgets are what no force and no open side accounts for") {
     CHECK(outcome.summary.extremes.max_speed_time == 2.0);
 }
 
-TEST_CASE("the summary times every observer by name and knows the share of output") {
+TEST_CASE("the summary times every observer by name and has the share of output") {
     const Outcome outcome = run_fake({}, {2.0, 0.4, false});
     REQUIRE(outcome.summary.output.size() == 2);
     CHECK(outcome.summary.output[0].name == "notes");
@@ -235,7 +235,7 @@ TEST_CASE("wall time reads as a clock") {
     CHECK(clock_text(std::numeric_limits<double>::infinity()) == "-:--");
 }
 
-TEST_CASE("where nobody looks at fields they are worked out once, for the end") {
+TEST_CASE("where no observer reads fields they are computed once, for the end") {
     for (const bool looks : {true, false}) {
         CAPTURE(looks);
         FakeSimulation simulation;

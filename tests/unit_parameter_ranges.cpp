@@ -42,8 +42,7 @@ const ParameterRange& row_of(const std::string& key, const std::string& what) {
 
 }  // namespace
 
-TEST_CASE("Plausible values lie in order, within what their key allows, and name a year or a place to look up",
-          "[parameters]") {
+TEST_CASE("Plausible values lie in order, within what their key allows, and name a year or a source", "[parameters]") {
     const Parameter* kind = find_parameter("case.kind");
     REQUIRE(kind);
     for (const ParameterRange& row : parameter_ranges()) {

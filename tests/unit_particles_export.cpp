@@ -10,7 +10,7 @@
 using namespace frana;
 using namespace release_maker;
 
-TEST_CASE("The bed between nodes is bilinear, and unknown outside and beside nodata", "[particles]") {
+TEST_CASE("The bed between nodes is bilinear, and unknown outside and next to nodata", "[particles]") {
     Raster bed = flat_bed(4, 4, 10.0, 100.0, 200.0);
     for (Index j = 0; j < 4; ++j)
         for (Index i = 0; i < 4; ++i) bed.at(i, j) = static_cast<double>(i + 10 * j + i * j);

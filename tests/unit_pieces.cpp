@@ -91,7 +91,7 @@ TEST_CASE("Points become two across a gap that grows, and halves lie evenly", "[
     CHECK(points_to_split(flow.body().points, flow.body().grid, {}).empty());
 }
 
-TEST_CASE("Splitting keeps mass, momentum and its ledger, with the same bits for any threads", "[solid][pieces]") {
+TEST_CASE("Splitting conserves mass, momentum and its ledger, with the same bits for any threads", "[solid][pieces]") {
     const int threads = omp_get_max_threads();
     for (const SolidLaw& law : all_solid_laws()) {
         CAPTURE(law.index());

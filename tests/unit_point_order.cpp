@@ -142,7 +142,7 @@ TEST_CASE("Tiles side by side have their turns one after the other, in the same 
     REQUIRE(orders[3] != orders[0]);
 }
 
-TEST_CASE("Tiles of a flow on the map have their turns after those beside them that come first", "[points][threads]") {
+TEST_CASE("Tiles of a flow on the map have their turns after adjacent ones that come first", "[points][threads]") {
     GridGeometry geometry;
     geometry.nx = geometry.ny = 80;
     const TileGrid grid(geometry);
@@ -176,7 +176,7 @@ TEST_CASE("Tiles of a flow on the map have their turns after those beside them t
     REQUIRE(lists[0] == lists[1]);
 }
 
-TEST_CASE("Tiles in space have their turns after those beside them that come first", "[points][solid][threads]") {
+TEST_CASE("Tiles in 3D have their turns after adjacent ones that come first", "[points][solid][threads]") {
     GridGeometry3d geometry;
     geometry.nodes = {40, 40, 40};
     const Grid3d grid(geometry);
@@ -247,7 +247,7 @@ TEST_CASE("No mirror particle in a plane or a bed stands farther to the side tha
 }
 
 // Linux refuses a single block that is larger than the machine's memory, unless it is told that none need be set aside.
-TEST_CASE("Nodes of a grid that is larger than the memory are there, where few of them are touched", "[points]") {
+TEST_CASE("Nodes of a grid that is larger than the memory are there, where few of them are used", "[points]") {
     int overcommit = 0;
     std::ifstream("/proc/sys/vm/overcommit_memory") >> overcommit;
     if (overcommit == 2) {

@@ -176,7 +176,7 @@ TEMPLATE_TEST_CASE("Four points that stay whole are cut as each of them is", "[p
     CHECK(whole > 100);
 }
 
-TEST_CASE("Merging thins a crowd and keeps mass, momentum, centre and second moments", "[points]") {
+TEST_CASE("Merging thins a crowd and conserves mass, momentum, centre and second moments", "[points]") {
     Pool pool;
     pool.sort();
     Merger merger(pool.flow);
@@ -197,7 +197,7 @@ TEST_CASE("Merging thins a crowd and keeps mass, momentum, centre and second mom
     CHECK(pool.flow.columns.count() == 3);
 }
 
-TEST_CASE("Of two points that merge the heavier one keeps its number", "[points]") {
+TEST_CASE("Two points that merge have the number of the heavier one", "[points]") {
     const bool heavy_first = GENERATE(true, false);
     Pool pool;
     pool.sort();
@@ -285,7 +285,8 @@ TEST_CASE("Parts that splitting holds at the sides lie in the outermost cells of
     }
 }
 
-TEST_CASE("Splitting keeps mass, momentum and centre: two parts along the longer edge, four of a square", "[points]") {
+TEST_CASE("Splitting conserves mass, momentum and centre: two parts along the longer edge, four of a square",
+          "[points]") {
     for (const double longer : {0.85, 0.9}) {
         Pool pool;
         pool.add(6.2, 6.3, 2.0, 0.85);

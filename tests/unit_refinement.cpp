@@ -102,7 +102,7 @@ TEST_CASE("Enough is the coarsest cell that agrees with the finest, as all betwe
           "or more); add a finer cell, such as 2.5 m.");
 }
 
-TEST_CASE("Each part of the rule is asked for", "[refinement]") {
+TEST_CASE("Each part of the rule is required", "[refinement]") {
     const auto converged_with = [](double CellFigures::*figure, double value) {
         std::vector<CellFigures> runs = {run_on(10), run_on(5)};
         runs[0].*figure = value;

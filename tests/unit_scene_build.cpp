@@ -386,7 +386,7 @@ TEST_CASE("The verification's presets are those of the case file", "[scene]") {
     }
 }
 
-TEST_CASE("An outline's layer is named beside it or with it, and its file is looked for without it", "[scene]") {
+TEST_CASE("An outline's layer is named apart or with it, and its file is found without it", "[scene]") {
     FakeGis gis = slope_gis();
     gis.polygons["outlines.gpkg|layername=scar"] = gis.polygons["release.geojson"];
     for (const char* keys : {"outline = \"outlines.gpkg\"\nlayer = \"scar\"\ndepth = 2.0",

@@ -106,7 +106,7 @@ TEST_CASE("A corner that stands in is a corner of two planes, from before it and
     CHECK(adjacent[1].distance == Approx(0.2));
 }
 
-TEST_CASE("In corners of a barrier of any width no image stands where material may be", "[solid]") {
+TEST_CASE("In corners of a barrier of any width no mirror particle stands where material may be", "[solid]") {
     const double wide = GENERATE(60.0, 70.0, 90.0, 110.0, 130.0) * constants::kPi / 180.0;
     const Vec2 ray(std::cos(wide), std::sin(wide));
     // A solid around the wedge between +x and the ray, large against the reach.
@@ -125,7 +125,7 @@ TEST_CASE("In corners of a barrier of any width no image stands where material m
     }
 }
 
-TEST_CASE("Mirror particles of a lattice around a box fill it once, beside its edges and corners too", "[solid]") {
+TEST_CASE("Mirror particles of a lattice around a box fill it once, at its edges and corners too", "[solid]") {
     constexpr double kCell = 1.0, kPart = 0.5, kDeep = 1.5;
     const auto [name, surface] = GENERATE(
         table<std::string, Surface>({{"outline", Surface::barrier(Prism(rectangle(0, 0, 8, 8), 6.0))},
@@ -210,7 +210,7 @@ TEST_CASE("The top of a barrier may follow the ground", "[solid]") {
     CHECK(contact(dam, {-4, -3, 3.8}).distance > 2.0);          // far above it here
 }
 
-TEST_CASE("A barrier that follows the ground is drawn no higher than the ground beside it is", "[solid]") {
+TEST_CASE("A barrier that follows the ground is drawn no higher than the adjacent ground", "[solid]") {
     Raster top = Raster::filled({21, 21, -10.0, -10.0, 1.0}, 6.0);
     top.at(20, 20) = 470.0;
     top.at(10, 12) = 6.5;
@@ -243,7 +243,7 @@ TEST_CASE("A wall along a line keeps its wet face on the line", "[solid]") {
     CHECK_THROWS_WITH(Prism(ring({{0, 0}, {1, 1}, {1, 1}, {0, 1}}), 1.0), Catch::Contains("twice in a row"));
 }
 
-TEST_CASE("A box as a mesh has the contacts of its outline, beside its edges and corners too", "[solid]") {
+TEST_CASE("A box as a mesh has the contacts of its outline, at its edges and corners too", "[solid]") {
     constexpr double kCell = 0.5;
     const Surface outline = Surface::barrier(Prism(rectangle(0, 0, 4, 3), 2.0)),
                   mesh = Surface::barrier(verify::box_as_mesh({0, 0, -8}, {4, 3, 2}, kCell));

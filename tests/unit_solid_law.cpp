@@ -66,7 +66,7 @@ TEST_CASE("Sand is never stressed beyond Drucker and Prager's cone, and flows wi
     CHECK(Sym3::read(state).trace() == Approx(-3e-3).epsilon(1e-9));
 }
 
-TEST_CASE("Sand that was pulled apart carries nothing until the gap is closed", "[solid]") {
+TEST_CASE("Sand that was drawn apart carries nothing until the gap is closed", "[solid]") {
     const auto law = solid::DruckerPrager::of(solid::Elastic::of(1e6, 0.3), 0.5, 0.0);
     double state[7] = {}, j = 1.0;
     const auto stretch = [&](double rate) {

@@ -16,7 +16,7 @@ std::vector<MirrorParticle> mirrors_of(const std::vector<Surface>& surfaces, con
 
 }  // namespace
 
-TEST_CASE("A point near one plane has one image; beyond the reach of its nodes, none", "[solid]") {
+TEST_CASE("A point near one plane has one mirror particle; beyond the reach of its nodes, none", "[solid]") {
     const std::vector<Surface> floor = {Surface::plane({0, 0, 1}, {0, 0, 1})};
     const auto one = mirrors_of(floor, {5, 6, 3.5});
     REQUIRE(one.size() == 1);
@@ -49,7 +49,7 @@ TEST_CASE("A stuck surface turns velocities round, and two sides of a slice have
     CHECK((mirrors[1].place - Vec3(0, 3.5, 0)).norm() < 1e-15);
 }
 
-TEST_CASE("Behind a stuck surface the images of a flow that bends go on with its bend, in a corner too", "[solid]") {
+TEST_CASE("Behind a stuck surface mirror particles of a bending flow go on with its bend, also in corners", "[solid]") {
     // Along the floor z = 0 the speeds (2, -1) z + bend z^2: at rest on it; a side at y = 0 mirrors them. Speeds whose
     // gradient is gone at the point have just met the floor: they are turned round as they are. So are those of a layer
     // that is faster over its height than the shear velocity of its stress times sqrt(2).
@@ -88,7 +88,7 @@ TEST_CASE("Behind a stuck surface the images of a flow that bends go on with its
     CHECK(held == 2);
 }
 
-TEST_CASE("A side that meets no other surface shows its images as a lone one, also where two others meet", "[solid]") {
+TEST_CASE("A side that meets no other shows its mirror particles as a lone one, also between two others", "[solid]") {
     // Two sides that meet, and one opposite to both: more than 120 degrees from each.
     const std::vector<Surface> sides = {Surface::plane({0, 0, 0}, {1, 0, 0}), Surface::plane({0, 0, 0}, {0.8, 0.6, 0}),
                                         Surface::plane({2, 0, 0}, {-1, 0, 0})};
@@ -135,7 +135,7 @@ TEST_CASE("A box is near a surface when its nearest corner is", "[solid]") {
     CHECK(surfaces_near(list, {0, 0, 2.4}, {1, 1, 3}, 0.1, 0.2) == 2u);
 }
 
-TEST_CASE("In corners of any width no image stands where material may be", "[solid]") {
+TEST_CASE("In corners of any width no mirror particle stands where material may be", "[solid]") {
     const double wide = GENERATE(60.0, 70.0, 90.0, 110.0, 130.0, 150.0, 170.0) * constants::kPi / 180.0;
     // A floor towards +x, and a plane that rises from the origin at the angle `wide` to it.
     const std::vector<Surface> corner = {Surface::plane({0, 0, 0}, {0, 0, 1}),

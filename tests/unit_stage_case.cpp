@@ -40,7 +40,7 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 
 }  // namespace
 
-TEST_CASE("Mud by the bed law is mud in space, which its bed holds or brakes", "[stages]") {
+TEST_CASE("Mud by the bed law is mud in 3D, which its bed holds or brakes", "[stages]") {
     const auto of = [](const std::string& bed, const std::string& more) {
         const std::string text =
             "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"
@@ -176,7 +176,7 @@ TEST_CASE("Stages that cannot be are refused in one sentence", "[stages]") {
               "stage.0.cell: found, but stage.model = \"depth_averaged\" does not use it"));
 }
 
-TEST_CASE("Sand is as strong as its angle says in triaxial compression, or where asked in plane strain", "[case]") {
+TEST_CASE("Sand is as strong as its angle says in triaxial compression, or by choice in plane strain", "[case]") {
     const std::string sand = two + west + "law = \"drucker_prager\"\nyoung_modulus = 1e6\nfriction_angle_deg = 30\n";
     const auto alpha = [&](const std::string& keys) {
         return std::get<solid::DruckerPrager>(scene_of(sand + keys).solid->law).alpha;
@@ -195,7 +195,7 @@ TEST_CASE("Cohesion without an angle of friction has no cone, and is refused by 
           Approx(5000.0 / std::tan(constants::kPi / 180.0)));
 }
 
-TEST_CASE("Sand keeps its velocities unless it is told not to, fluids do not", "[case]") {
+TEST_CASE("Sand retains its velocities unless it is told not to, fluids do not", "[case]") {
     const std::string sand = two + west + "law = \"drucker_prager\"\nyoung_modulus = 1e6\nfriction_angle_deg = 30\n";
     const SolidStage stage = scene_of(sand).solid.value();
     CHECK(stage.transfer == Transfer::flip);

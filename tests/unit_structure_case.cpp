@@ -76,7 +76,7 @@ TEST_CASE("A structure's keys reach the scene", "[structured]") {
     CHECK(scene_of(hexagon).structure->material.yield == ColumnYield::hexagon);
 }
 
-TEST_CASE("Water beside a structure reaches the scene, and what does not fit it is refused", "[structured][mixture]") {
+TEST_CASE("Water with a structure reaches the scene, and what does not fit it is refused", "[structured][mixture]") {
     const std::string density = "[material]\ndensity = 1900.0\n", free = "[water]\nmodel = \"free\"\n";
     CHECK_FALSE(scene_of(structure).water.has_value());
     const WaterPhase water = scene_of(density + structure + "confined_water = 0.25\n" + free +
@@ -116,7 +116,7 @@ TEST_CASE("Water beside a structure reaches the scene, and what does not fit it 
               "found 0.2 with fraction = 0"));
 }
 
-TEST_CASE("A kind's density is that of what flows, and beside water the grains' own is asked for",
+TEST_CASE("A kind's density is that of what flows, and with water the grains' own is required",
           "[structured][mixture]") {
     const std::string kind = "[case]\nkind = \"debris_flow\"\n", free = "[water]\nmodel = \"free\"\n";
     CHECK(has(problem_of_structure(kind + structure + free), "material.density: not given with water.model"));
@@ -130,8 +130,7 @@ TEST_CASE("A kind's density is that of what flows, and beside water the grains' 
     CHECK(ranges(free) == 0);
 }
 
-TEST_CASE("The resolved case of a structure leaves out the keys that it has no use for, and can be read again",
-          "[structured]") {
+TEST_CASE("The resolved case of a structure leaves out keys without use, and can be read again", "[structured]") {
     const std::string rest =
         "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"
         "[time]\nend = 20\n";

@@ -10,9 +10,8 @@
 
 using namespace frana;
 
-TEST_CASE(
-    "A film has the slope of its bed on every node, margins too, where the bed bends by more than the film is deep",
-    "[solver][surface]") {
+TEST_CASE("A film has its bed's slope everywhere, margins too, where the bed bends more than the film is deep",
+          "[solver][surface]") {
     // A tenth of a millimetre on a bed that bends by 0.86 m a cell, up or down, and rises by 3.5 m or more; at rest or not.
     const double cell = 24.0, depth = 1e-4, bend = GENERATE(7.5e-4, -7.5e-4), speed = GENERATE(0.0, 1.0);
     const bool along_x = GENERATE(true, false);

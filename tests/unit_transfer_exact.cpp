@@ -106,7 +106,7 @@ TEST_CASE("Every transfer gathers a linear velocity and its gradient exactly", "
     }
 }
 
-TEST_CASE("The paper's pressure pushes with g m h / 2 and weighs with g m grad Z", "[transfer]") {
+TEST_CASE("The paper's pressure is g m h / 2 and its weight g m grad Z", "[transfer]") {
     Scene scene = plane();
     scene.scheme.transfer = Transfer::pic;
     scene.scheme.shape = GENERATE(Shape::linear, Shape::quadratic);

@@ -158,7 +158,7 @@ TEST_CASE("Drag split by structure is the unsplit one without structure, and blo
           Approx(ut * (1000.0 / 2650.0 / 180.0) * ratio * ratio * ratio * re).epsilon(1e-6));
 }
 
-TEST_CASE("V12: a push on the solids moves the water at once by its virtual mass", "[two_phase][solver]") {
+TEST_CASE("V12: an impulse on the solids moves the water at once by its virtual mass", "[two_phase][solver]") {
     const double chi = 300.0, force = 7.0, dt = 1e-6;
     Phase c{kMc, {0, 0}, {force, 0}}, u{kMu, {0, 0}};
     exchange({50.0, 1, chi}, dt, c, u);

@@ -188,7 +188,7 @@ rheology::Bingham law_at(const Scene& scene, Index i, Index j) {
 
 }  // namespace
 
-TEST_CASE("Zones say numbers of the rheology beside those of the bed law", "[zones][scene]") {
+TEST_CASE("Zones give numbers of the rheology along with those of the bed law", "[zones][scene]") {
     FakeGis gis = slope_gis();  // 100 m + 0.5 (x - 1000); nodes at 1002.5, 1007.5, ...
     gis.polygons["fan.geojson"] = rectangle(1020, 2020, 1040, 2040);
     const std::string zones =

@@ -38,7 +38,7 @@ TEST_CASE("Surges that leave at an open side bring no mass back", "[verify]") {
     CHECK(worst_p2g(scene, 150) <= 1e-12);  // sums of 1e4 numbers, each right to 1e-16
 }
 
-TEST_CASE("Material in every corner of a small grid keeps its mass", "[verify]") {
+TEST_CASE("Material in every corner of a small grid conserves its mass", "[verify]") {
     const Sides sides = GENERATE(Sides::open, Sides::wall);
     Scene scene = verify::scene_on(29, 29, 1.0, [](double x, double y) { return 0.1 * std::sin(x) + 0.05 * y; });
     scene.sides = sides;

@@ -63,7 +63,7 @@ TEST_CASE("A lake with fitted masses rests to the last bit: the round-off of its
 }
 
 // Section 4.1 as the authors ran it: bilinear shapes, PIC, the level known. Table 1 has 2e-12 and 3e-13.
-TEST_CASE("The paper preset keeps a lake of known level at rest", "[lake][paper]") {
+TEST_CASE("In the paper preset a lake of known level stays at rest", "[lake][paper]") {
     for (const auto& z : {z1(), z2()}) {
         Scene scene = lake(z, 0.0);
         scene.terrain = TerrainModel::shallow;

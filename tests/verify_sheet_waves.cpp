@@ -65,7 +65,7 @@ TEST_CASE("A viscous sheet on a slope grows no wave of two cells", "[verify][she
 // of 0.0243. Half a cell on, nodes have none. So the wave falls by exp(-0.5 * 16 / pi * 0.243) a cell, by exp(-2.5) in four.
 // Steps of half a cell leave some of that out. Pressure does nothing: it sees no slope, and the sheet is faster than its
 // surface waves.
-TEST_CASE("A sheet that slides on levels its waves of two cells, one that lies keeps them", "[verify][sheet_waves]") {
+TEST_CASE("A sheet that slides on levels its waves of two cells, in one that lies they stay", "[verify][sheet_waves]") {
     const double speed = GENERATE(0.0, 2.0), strength = GENERATE(0.0, 1.0);
     CAPTURE(speed, strength);
     Scene scene = scene_on(201, 5, kCell, [](double, double) { return 0.0; });

@@ -95,9 +95,8 @@ TEST_CASE("V16: a heap of grains spreads by Ka on its way down a plane as Savage
     CHECK(fine < 0.6 * coarse);  // first order, by the kink at the rim; measured 0.44 and 0.33
 }
 
-TEST_CASE(
-    "V16: a ridge of grains stays to the last bit where Ka times its slope is below the bed's friction, not above",
-    "[structured][grains]") {
+TEST_CASE("V16: a ridge of grains stays to the last bit only where Ka times its slope is below bed friction",
+          "[structured][grains]") {
     const double friction = 0.15, active = 1.0 / 3.0;  // Ka at 30 degrees; at rest grains push by it
     const double ratio = GENERATE(0.8, 1.25);
     const double slope = ratio * friction / active, cell = 0.25, length = 2.0 / slope;
@@ -118,7 +117,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("V16: a vertical face lower than Bell's height does not push, a higher one by Ka less what cohesion holds",
+TEST_CASE("V16: a vertical face below Bell's height has no pressure, a higher one Ka's less what cohesion holds",
           "[structured]") {
     constexpr double kDepth = 1.0, kWidth = 1.0, kEnd = 0.2;
     const double ratio = GENERATE(1.05, 0.5, 0.05);  // of Bell's height 4 c / (rho g sqrt(Ka)) over the block's
@@ -151,9 +150,8 @@ TEST_CASE("V16: a vertical face lower than Bell's height does not push, a higher
     }
 }
 
-TEST_CASE(
-    "V18: columns that are pulled stay as evenly apart as they were, without artificial stress, whichever way they lie",
-    "[structured]") {
+TEST_CASE("V18: columns drawn apart stay as evenly spaced as before, without artificial stress, whichever way they lie",
+          "[structured]") {
     // A bar 12 m long is drawn out by a fifth. Its free ends send waves inwards, 2.5 m/s for a second; between them columns
     // go with the strain, and a tensile instability would grow at about sqrt(strain) c / spacing, 16 / s: a millionfold.
     constexpr double kRate = 0.2, kEnd = 1.0, kSpacing = 0.05;

@@ -11,7 +11,7 @@ namespace frana {
 
 /// A closed surface of triangles (.stl, .vtp or .obj, in metres) as signed distances, in map coordinates.
 /// It may have several parts and point inwards, but all of it one way. Throws UserError when it cannot be
-/// read, is open, turns its sides, cuts through itself, or would need more than 10^8 nodes.
+/// read, is open, turns its sides or cuts through itself. So too if it would need more than 10^8 nodes.
 DistanceField read_barrier_mesh(const std::filesystem::path& file, const MeshSampling& sampling);
 
 /// The same for build_scene().

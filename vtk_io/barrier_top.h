@@ -12,7 +12,7 @@ struct BarrierTop {
     double height = 0.0;          ///< above the bed, where there is no level [m]
 };
 
-/// Elevation between the nodes [m]; beside the raster that of its nearest place. NaN near nodata.
+/// Elevation between the nodes [m]; outside of the raster that of its nearest place. NaN near nodata.
 double elevation_at(const Raster& bed, const Vec2& p);
 /// Elevation of a barrier's top there; `otherwise` where the bed has none.
 double top_at(const BarrierTop& top, const Raster& bed, const Vec2& p, double otherwise);

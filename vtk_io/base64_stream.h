@@ -1,6 +1,6 @@
 #pragma once
-// A VTK writer spends most of its time in its own base64, of four letters a call; includes VTK, so only for .cpp files of
-// this room.
+// A VTK writer spends most of its time in its own base64, of four letters a call. Includes VTK, so only for .cpp files
+// of this room.
 #include <vtkNew.h>
 #include <vtkOutputStream.h>
 

@@ -10,7 +10,7 @@ elseif(FRANA_CATALYST STREQUAL "legacy")
     find_library(FRANA_${name} ${name}-pv5.11 HINTS ${paraview_libraries} REQUIRED)
     list(APPEND FRANA_CATALYST_LIBRARIES ${FRANA_${name}})
   endforeach()
-  # Debian's libvtkPythonInterpreter does not link Python itself; the linker must neither drop it nor ask for more.
+  # Debian's libvtkPythonInterpreter does not link Python itself. The linker must neither drop it nor require more.
   find_package(Python3 3.11 REQUIRED COMPONENTS Development.Embed)
   list(APPEND FRANA_CATALYST_LIBRARIES -Wl,--no-as-needed ${Python3_LIBRARIES} -Wl,--as-needed
               -Wl,--allow-shlib-undefined)

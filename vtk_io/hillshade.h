@@ -10,26 +10,26 @@
 
 namespace frana {
 
-/// How values between nodes are found: linear keeps the nodes' values; smooth is the cubic B-spline, which
+/// How values between nodes are found. linear leaves the nodes' values as they are. smooth is the cubic B-spline, which
 /// rounds off noise of the size of a cell and has a continuous slope.
 enum class Between { linear, smooth };
 
-/// The raster at the nodes of `target`, for looking at (never for computing): interpolated where the target
-/// is finer, block means first where it is coarser than 1.5 cells. NaN outside the raster's pixels and where
-/// the nearest node has none; a stencil that touches NaN falls back to the valid corners of the linear one.
+/// The raster at the nodes of `target`, for pictures (never for computing). It is interpolated where the target is
+/// finer. Where it is coarser than 1.5 cells, block means come first. NaN outside the raster's pixels and where the
+/// nearest node has none. A stencil that touches NaN falls back to the valid corners of the linear one.
 Raster resampled(const Raster& raster, const GridGeometry& target, Between between);
 
-/// Light on the surface in [0, 1] per node, NaN where the bed has none. Four lamps 45 degrees high, at
-/// azimuths 315 (weight 0.5), 270 (0.2), 360 (0.2) and 225 (0.1), so that no slope is wholly dark and all
-/// stay readable; slopes are multiplied by `exaggeration`, lamps turned clockwise by `turn` [radians].
+/// Light on the surface in [0, 1] per node, NaN where the bed has none. Four lamps stand 45 degrees high, at azimuths
+/// 315 (weight 0.5), 270 (0.2), 360 (0.2) and 225 (0.1). So no slope is wholly dark and all stay readable. Slopes are
+/// multiplied by `exaggeration`, lamps turned clockwise by `turn` [radians].
 std::vector<float> hillshade(const Raster& bed, double exaggeration, double turn = 0.0);
 
 /// The factor that gives gentle terrain enough contrast: mean slope brought to 0.6, at least 1 and at most 5.
 double shading_exaggeration(const Raster& bed);
 
-/// Brings shades to grey levels in [0.42, 0.98]: light enough for black lines on top, and with the same
-/// contrast whichever way the terrain faces (1st to 99th percentile, at least 0.35 of shade apart; median to
-/// 0.8).
+/// Brings shades to grey levels in [0.42, 0.98]: light enough for black lines on top. The contrast is the same
+/// whichever way the terrain faces. It spans the 1st to 99th percentile, at least 0.35 of shade apart; the median
+/// becomes 0.8.
 class ReliefGrey {
 public:
     explicit ReliefGrey(const std::vector<float>& shade);

@@ -23,7 +23,7 @@
 namespace frana {
 namespace {
 
-/// A series of files in the folder, one for each look.
+/// A series of files in the folder, one for each sample.
 class Series {
 public:
     Series(const std::filesystem::path& folder, const std::string& name, const char* extension)

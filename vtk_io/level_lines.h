@@ -22,7 +22,7 @@ struct LabelledLine {
 };
 
 /// Finds the straightest stretch of the line [px] that takes a label of that width [px] and where `free`
-/// holds; without one the line stays whole.
+/// holds. Without one the line stays whole.
 LabelledLine with_label(const std::vector<Vec2>& line, double label_width,
                         const std::function<bool(const Vec2&)>& free);
 

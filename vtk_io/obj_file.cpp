@@ -41,8 +41,8 @@ void add_point(const Place& place, std::istringstream& words, vtkPoints* points)
     points->InsertNextPoint(x.data());
 }
 
-/// "f 1 2 3" or "f 1/4/2 2/5/2 -1/6/2": of each corner the first number is its point, from 1; below zero from the last
-/// one. Whether there is such a point is seen when all are read: files may give faces first.
+/// "f 1 2 3" or "f 1/4/2 2/5/2 -1/6/2": of each corner the first number is its point, from 1. A number below zero
+/// counts from the last one. Whether there is such a point is seen when all are read: files may give faces first.
 void add_face(const Place& place, std::istringstream& words, vtkIdType points, vtkCellArray* faces) {
     std::vector<vtkIdType> corners;
     for (std::string word; words >> word;) {

@@ -15,17 +15,17 @@ struct PvdEntry {
     std::string file;
 };
 
-/// Writes a .pvd whole by atomic rename; times keep all their digits. Throws UserError with path and reason.
+/// Writes a .pvd whole by atomic rename; times have all their digits. Throws UserError with path and reason.
 void write_pvd(const std::filesystem::path& pvd, const std::vector<PvdEntry>& entries);
 
 /// Reads a .pvd. Throws UserError when it is missing or not a .pvd.
 std::vector<PvdEntry> read_pvd(const std::filesystem::path& pvd);
 
-/// A series that grows while a run goes on: each new file is listed at once, a number given again replaces
-/// its line. Whoever opens the .pvd meanwhile finds only files that exist.
+/// A series that grows while a run goes on. Each new file is listed at once, and a number given again replaces its
+/// line. A .pvd that is opened meanwhile names only files that exist.
 class PvdSeries {
 public:
-    /// `pvd` stands in the run directory; files are `stem`/`stem`_NNNNNN`extension` beside it.
+    /// `pvd` stands in the run directory; files are `stem`/`stem`_NNNNNN`extension` next to it.
     PvdSeries(std::filesystem::path pvd, std::string stem, std::string extension);
     /// Where the file of this frame goes; makes the folder. Throws UserError when that fails.
     std::filesystem::path file(std::int64_t number) const;

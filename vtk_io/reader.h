@@ -19,8 +19,8 @@ struct LoadedFrame {
     double time = 0.0;  ///< [s]
     GridGeometry grid;
     /// grid.size() * components numbers per name, components interleaved, row 0 = south. "elevation" is NaN
-    /// where there is no terrain, as it was in the run; other arrays hold their stand-in there, and "outside"
-    /// is 1 (writers.h).
+    /// where there is no terrain, as it was in the run. Other arrays hold their stand-in there, and "outside" is 1
+    /// (writers.h).
     std::map<std::string, std::vector<double>> nodes;
     std::map<std::string, int> components;
     std::map<std::string, std::string> units;

@@ -21,8 +21,8 @@
 namespace frana {
 namespace {
 
-/// Bed at any map point, bilinear between those of the four nodes around it that have terrain; outside the nodes as
-/// at the edge. NaN when none of the four has terrain.
+/// Bed at any map point, bilinear between those of the four nodes around it that have terrain. Outside the nodes as at
+/// the edge. NaN when none of the four has terrain.
 double draped(const Raster& bed, const Vec2& point) {
     const GridGeometry& g = bed.geometry;
     const double u = std::clamp((point.x() - g.x0) / g.cell, 0.0, static_cast<double>(g.nx - 1));

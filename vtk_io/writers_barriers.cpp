@@ -28,7 +28,7 @@ Place moved(const Place& from, const Place& right, double a, const Place& up, do
 
 double dot(const Place& a, const Place& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Patches around a top that are not on it, and were not pushed, are not shown.
+/// Patches around a top that are not on it, and had no force, are not shown.
 bool shown(const PatchedFace& face, std::size_t square) {
     const Place& given = face.impulse[square];
     return face.off_top.empty() || !face.off_top[square] || dot(given, given) > 0.0;

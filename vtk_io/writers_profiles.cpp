@@ -55,7 +55,7 @@ public:
     }
     void serialize(Archive& archive) override {
         series_.serialize(archive);
-        first_.resize(lines_.size());  // a state is kept after the first frame only
+        first_.resize(lines_.size());  // a state is saved after the first frame only
         for (std::size_t k = 0; k < first_.size(); ++k) archive.array("surface_" + std::to_string(k), first_[k]);
     }
 

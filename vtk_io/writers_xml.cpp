@@ -99,7 +99,7 @@ void hide_nodes(vtkImageData* image, const std::vector<std::uint8_t>& outside) {
 
 /// Throws std::bad_alloc when so many bytes are not to be had.
 static void require_memory(std::size_t bytes) {
-    char* volatile room = new char[bytes];  // volatile: or the compiler sees that nobody needs it
+    char* volatile room = new char[bytes];  // volatile: or the compiler drops it as unused
     delete[] room;
 }
 
@@ -108,14 +108,14 @@ void write_xml(vtkXMLWriter* writer, vtkDataObject* data, const std::filesystem:
     writer->AddObserver("ErrorEvent", quiet);
     writer->GetExecutive()->AddObserver("ErrorEvent", quiet);
     writer->SetInputDataObject(data);
-    // VTK 9.1 frees what it never got when memory ends within its writers, and dies of it: where the address space is
-    // limited, what they need (compressed blocks, their base64) is asked for before they do.
+    // VTK 9.1 frees what it never got when memory ends within its writers, and crashes. Where the address space is
+    // limited, what they need (compressed blocks, their base64) is reserved first.
     require_memory(std::size_t{3} * 512 * static_cast<std::size_t>(data->GetActualMemorySize()) +
                    (std::size_t{4} << 20));
     // To memory first: VTK 9.1 does not survive a full disk in this mode.
     writer->WriteToOutputStringOn();
-    // Inline base64, a third larger than appended bytes: Debian 12's ParaView 5.11 reads appended data (raw or base64)
-    // with libexpat1 2.5.0-1+deb12u1, but no longer with the security update 2.5.0-1+deb12u5.
+    // Inline base64 is a third larger than appended bytes. Debian 12's ParaView 5.11 reads appended data (raw or
+    // base64) with libexpat1 2.5.0-1+deb12u1. With the security update 2.5.0-1+deb12u5 it no longer does.
     writer->SetDataModeToBinary();
     writer->SetHeaderTypeToUInt64();
     writer->SetCompressorTypeToLZ4();

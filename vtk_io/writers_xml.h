@@ -33,7 +33,7 @@ vtkSmartPointer<vtkImageData> image_of(const GridGeometry& grid);
 /// Adds `outside`, and HIDDENPOINT where it is 1 (why both: writers.h); nothing when it is empty.
 void hide_nodes(vtkImageData* image, const std::vector<std::uint8_t>& outside);
 
-/// The particles: points in double at "position", one vertex cell each, every other column as an array; with units
+/// The particles: points in double at "position", one vertex cell each, every other column as an array. They have units
 /// and the time (writers_frame.cpp).
 vtkSmartPointer<vtkPolyData> cloud_of(const Frame& frame);
 

@@ -19,7 +19,7 @@
 namespace frana {
 namespace {
 
-/// VTK 9.1 dies of an array whose type it does not know.
+/// VTK 9.1 crashes on an array of an unknown type.
 bool knows_type_in(std::string_view tag) {
     constexpr std::array<std::string_view, 12> kTypes = {"Float32", "Float64", "Int8",  "UInt8",  "Int16",  "UInt16",
                                                          "Int32",   "UInt32",  "Int64", "UInt64", "String", "Bit"};
@@ -40,7 +40,7 @@ std::string bytes_of(const std::filesystem::path& file) {
     return text;
 }
 
-/// Every array of the file is of a type that VTK knows.
+/// Every array of the file is of a type that VTK has.
 bool types_are_known(const std::filesystem::path& file) {
     const std::string text = bytes_of(file);
     const std::string_view all = text;

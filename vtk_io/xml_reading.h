@@ -1,5 +1,6 @@
 #pragma once
-// Files of VTK's XML kinds and meshes from anywhere: what VTK itself would die of is found before or after it reads.
+// Files of VTK's XML kinds and meshes from anywhere. What would make VTK itself crash is found before or after it
+// reads.
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -10,10 +11,11 @@ class vtkXMLReader;
 namespace frana {
 
 /// Has `reader` read a file. False when it is not of the reader's kind, damaged, or VTK says anything about it;
-/// nothing reaches stderr. `choose` is called when the reader knows which arrays the file has, and may leave some out.
+/// nothing reaches stderr. `choose` is called when the reader has the names of the file's arrays, and may leave some
+/// out.
 bool read_xml(vtkXMLReader* reader, const std::filesystem::path& file, const std::function<void()>& choose = {});
 
-/// What is wrong with faces, lines or vertices, as "a face names point 7, counted from 0, of 4 points"; empty when
+/// What is wrong with faces, lines or vertices, as "a face names point 7, counted from 0, of 4 points". Empty when
 /// nothing is. VTK's filters trust what a file says.
 std::string fault_of(vtkPolyData* mesh);
 

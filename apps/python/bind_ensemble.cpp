@@ -73,7 +73,7 @@ private:
 py::dict run_ensemble(EnsemblePlan plan, const std::string& dir, int threads, bool resume, const py::object& progress) {
     const Waiting waiting;
     Work work(std::move(plan), dir, threads, resume);
-    constexpr int kTold = 4;  // looks between two calls
+    constexpr int kTold = 4;  // samples between two calls
     for (int look = 1;; ++look) {
         const bool over = work.wait(std::chrono::milliseconds(50));
         if (Waiting::outlived())

@@ -15,7 +15,7 @@ namespace {
 
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// In a process that was forked from the one which started a run, its thread is not there: the run is left alone.
+/// In a process that was forked from the one which started a run, its thread is not there. The run is left alone.
 struct EndSession {
     pid_t process = ::getpid();
     void operator()(Session* session) const {
@@ -48,7 +48,7 @@ public:
         return all;
     }
     std::string unit(bool of_grid, const std::string& name) const { return field(held(), of_grid, name).unit; }
-    /// Looks into the simulation's memory.
+    /// Reads the simulation's memory.
     py::array view(bool of_grid, const std::string& name) const {
         const std::shared_ptr<Session> session = held();
         const Field& of = field(session, of_grid, name);
@@ -158,7 +158,7 @@ public:
         if (!session_ || ::getpid() != process_ || over()) return;
         session_->end();
         wait_out();
-        if (!busy_) tell_failure();  // else whoever steps it tells
+        if (!busy_) tell_failure();  // else the thread that steps it does
     }
     bool over() const { return session_->state() == Session::State::over; }
     Session& session() const {

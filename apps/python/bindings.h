@@ -19,8 +19,8 @@ void bind_run(py::module_& module);       // bind_run.cpp
 void bind_folder(py::module_& module);    // bind_folder.cpp
 void bind_ensemble(py::module_& module);  // bind_ensemble.cpp
 
-/// Calls `work` on a thread of its own, without the interpreter's lock: a process that forks later has no threads of OpenMP
-/// on its main one.
+/// Calls `work` on a thread of its own, without the interpreter's lock. A process that forks later has no threads of
+/// OpenMP on its main one.
 template <class Work>
 auto aside(Work&& work) {
     const Waiting waiting;

@@ -10,8 +10,8 @@
 namespace frana {
 namespace {
 
-/// Python opens modules for themselves. The part of frana that draws pictures and knows VTK's files looks up the solver's
-/// functions among those that all may see, as it does in the program.
+/// Python opens modules for themselves. The part of frana that draws pictures and reads VTK's files uses the solver's
+/// functions. As in the program, it finds them among those that all may see.
 void show_to_modules() {
     Dl_info here;
     if (dladdr(reinterpret_cast<const void*>(&show_to_modules), &here) != 0)

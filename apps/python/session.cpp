@@ -8,7 +8,7 @@
 
 namespace frana {
 
-/// The last of the observers: those before it have written what they write when somebody looks.
+/// The last of the observers: those before it have written their output when the user sees the frame.
 class Session::Gate final : public Observer {
 public:
     explicit Gate(Session& session) : session_(session) {}
@@ -42,7 +42,7 @@ private:
         session_.stand(State::at_frame);
         session_.frame_ = nullptr;
         std::shared_ptr<FrameMemory>& memory = session_.memory_;
-        if (memory.use_count() > 1) {  // else nobody looks any more, and nobody can begin to
+        if (memory.use_count() > 1) {  // else no reader is left, and none can begin
             memory->given = session_.simulation_->give_frame_away();
             memory = std::make_shared<FrameMemory>();
         }
@@ -91,8 +91,8 @@ void Session::stand(State state) {
     changed_.wait(lock, [this] { return state_ == State::runs; });
 }
 
-/// What was added while it stood, after a step: nothing that is shown changes any more, a state that was kept has been taken up,
-/// and a run that ends takes nothing in. On the run's thread.
+/// What was added while it stood, after a step. Then nothing that is shown changes any more, and a saved state has been
+/// restored. A run that ends takes nothing in. On the run's thread.
 void Session::enter() {
     if (added_.count() == 0) return;
     if (!ending_) simulation_->add(added_);

@@ -1,6 +1,6 @@
 #pragma once
-// A run that stands still where somebody wants to look at it, and goes on when told to. It is the program's own run: the
-// time loop works on a thread of its own, and the last of its observers makes it wait. Knows nothing of Python.
+// A run that stands still where somebody wants to observe it, and goes on when told to. It is the program's own run.
+// The time loop works on a thread of its own, and the last of its observers makes it wait. It is without Python.
 #include <sys/types.h>
 
 #include <atomic>
@@ -20,8 +20,8 @@
 
 namespace frana {
 
-/// What a frame's fields point into, for whoever looks at them. While the run stands that is the simulation's own memory;
-/// when it goes on and somebody still looks, the memory is theirs.
+/// What a frame's fields point into, for its readers. While the run stands that is the simulation's own memory. When it
+/// goes on and a reader is left, the memory is the reader's.
 struct FrameMemory {
     std::shared_ptr<const void> given;
 };
@@ -30,9 +30,9 @@ class Session {
 public:
     struct Wishes {
         RunWishes run;
-        bool in_folder = true;  ///< false: nothing is written, and run.out, resume and overwrite are not looked at
+        bool in_folder = true;  ///< false: nothing is written, and run.out, resume and overwrite have no effect
         int threads = 0;        ///< 0: as OMP_NUM_THREADS or the machine says
-        double tick = 0.0;      ///< stand about so often, for somebody who wants to tell of progress [s]; 0: never
+        double tick = 0.0;      ///< stand about so often, to report progress [s]; 0: never
     };
     /// Where it is. All but `runs` stand still.
     enum class State { runs, ready, at_frame, tick, paused, over };
@@ -49,9 +49,9 @@ public:
     void go_to(double until) { go(false, until); }
     /// Goes on to wherever it was going.
     void go_on() { go(to_output_, until_); }
-    /// Asks for a stand after the present step.
+    /// Requests a stand after the present step.
     void pause() { pause_ = true; }
-    /// Asks for an end, without any more stands.
+    /// Requests an end, without any more stands.
     void end();
     /// Material that enters with the next step, while it stands.
     void add(const Seeds& columns) { added_.append(columns, 0, columns.count()); }

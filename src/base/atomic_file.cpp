@@ -69,8 +69,8 @@ void write_text(const std::filesystem::path& target, const std::string& text) {
     AtomicFile file(target);
     {
         std::ofstream stream(file.path(), std::ios::binary);
-        // In pieces: Linux takes single writes of more than 2 MB at a tenth of the speed when it finds no large pages
-        // free for its cache.
+        // In pieces: Linux may take single writes of more than 2 MB at a tenth of the speed. That is so when it finds
+        // no large pages free for its cache.
         constexpr std::size_t kPiece = std::size_t{1} << 20;
         for (std::size_t at = 0; at < text.size() && stream; at += kPiece)
             stream.write(text.data() + at, static_cast<std::streamsize>(std::min(kPiece, text.size() - at)));

@@ -1,13 +1,13 @@
 #pragma once
-// Files appear whole or not at all: write beside, then rename.
+// Files appear whole or not at all: write under another name, then rename.
 #include <cstdint>
 #include <filesystem>
 #include <string>
 
 namespace frana {
 
-/// A name beside `target` to write to; `commit()` renames it over the target, otherwise it is removed.
-/// Keeps the target's extension, since some writers choose the format by it. Not thread safe.
+/// A name next to `target` to write to; `commit()` renames it over the target, otherwise it is removed. Keeps the
+/// target's extension, since some writers choose the format by it. Not thread safe.
 class AtomicFile {
 public:
     explicit AtomicFile(std::filesystem::path target);
@@ -17,7 +17,7 @@ public:
     const std::filesystem::path& path() const { return temporary_; }
     /// Throws UserError when the rename fails (disk, permissions).
     void commit();
-    /// The same, and the bytes are on the disk before the name is: a power cut leaves the old file or the new one.
+    /// The same, and the bytes are on the disk before the name is. A power cut leaves the old file or the new one.
     void commit_to_disk();
 
 private:

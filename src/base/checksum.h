@@ -5,7 +5,7 @@
 namespace frana {
 
 /// A 64-bit sum of bytes, for finding damage and changes (it guards against accidents, not against people). Each step
-/// is one to one in what was there before and in the eight bytes that come, so a change within eight bytes is always
+/// is one to one in what was there before and in the eight bytes that come. So a change within eight bytes is always
 /// seen.
 class Checksum {
 public:

@@ -1,13 +1,13 @@
 #pragma once
-// The clock of every flow: where it is in time, and how its steps meet the times that are asked for.
+// The clock of every flow: where it is in time, and how its steps meet given times.
 #include <algorithm>
 
 #include "base/types.h"
 
 namespace frana {
 
-/// A step of at most `longest` towards a time that is `left` away, both [s]. The time is hit exactly, and the steps
-/// before it are not shorter than half of `longest`: a crumb would cost as much as a whole step.
+/// A step of at most `longest` towards a time that is `left` away, both [s]. The time is hit exactly. The steps before
+/// it are not shorter than half of `longest`: a crumb would cost as much as any step.
 inline double step_towards(double left, double longest) {
     if (left <= longest) return left;
     return left < 2.0 * longest ? 0.5 * left : longest;

@@ -23,7 +23,7 @@ enum class Colormap {
 /// Colour at t in [0, 1] (clamped; NaN counts as 0).
 Colour colour_at(Colormap map, double t);
 
-/// The nearest whole number to one that is not negative. It is asked for each pixel, and lround() takes longer.
+/// The nearest whole number to one that is not negative. It is computed for each pixel, and lround() takes longer.
 inline std::size_t nearest_whole(double value) {
     const double above = value + 0.5;
     return static_cast<std::size_t>(above);

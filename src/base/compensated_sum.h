@@ -4,8 +4,8 @@
 
 namespace frana {
 
-/// A sum whose error does not grow with the number of terms (Neumaier, ZAMM 54 (1974) 39-51): about one unit in the
-/// last place of the sum of absolute values, for up to 1e15 terms.
+/// A sum whose error does not grow with the number of terms (Neumaier, ZAMM 54 (1974) 39-51). It is about one unit in
+/// the last place of the sum of absolute values, for up to 1e15 terms.
 class CompensatedSum {
 public:
     explicit CompensatedSum(double start = 0.0) : sum_(start) {}
@@ -15,7 +15,7 @@ public:
         sum_ = next;
     }
     double value() const { return sum_ + lost_; }
-    /// Both of its numbers, to be kept with all their bits.
+    /// Both of its numbers, to be saved with all their bits.
     std::array<double*, 2> parts() { return {&sum_, &lost_}; }
 
 private:

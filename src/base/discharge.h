@@ -1,6 +1,7 @@
 #pragma once
-// Integrals over the table of an inflow: its discharge and its speed are linear between its times, and nothing comes before
-// and after them. A table is any type with `time` [s], `discharge` [m^3/s] and `speed` [m/s], lists of one length.
+// Integrals over the table of an inflow. Its discharge and its speed are linear between its times, and nothing comes
+// before and after them. A table is any type with `time` [s], `discharge` [m^3/s] and `speed` [m/s], lists of one
+// length.
 #include <algorithm>
 #include <cstddef>
 

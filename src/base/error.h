@@ -1,7 +1,7 @@
 #pragma once
-// Errors with a person in mind. The kind says whose fault it is and fixes the exit code of `frana`:
-// UserError 2 (case file, data, command line), NumericsError 3, InternalError 1, Interrupted 130.
-// A message reads: place, what was found, what is expected, what to do. Only main() catches.
+// Errors with a person in mind. The kind says whose fault it is and fixes the exit code of `frana`. UserError has 2
+// (case file, data, command line), NumericsError 3, InternalError 1, Interrupted 130. A message reads: place, what was
+// found, what is expected, what to do. Only main() catches.
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -10,7 +10,7 @@
 namespace frana {
 
 /// The case file, its data or the command line is wrong. Holds every problem found, one sentence each on a line of its
-/// own: line breaks and other control characters, which files may bring in, become spaces.
+/// own. Line breaks and other control characters, which files may bring in, become spaces.
 class UserError : public std::runtime_error {
 public:
     explicit UserError(const std::string& problem) : UserError(std::vector<std::string>{problem}) {}
@@ -55,7 +55,7 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// Checks an assumption of our own; always compiled in, so keep it out of inner loops.
+/// Checks an assumption of our own. It is always compiled in, so it does not belong in inner loops.
 inline void expect(bool condition, const char* what) {
     if (!condition) throw InternalError(std::string("internal error: ") + what);
 }

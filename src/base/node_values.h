@@ -3,8 +3,8 @@
 
 namespace frana {
 
-/// One value for all nodes (no bits in the mask), or one for each (all bits): read in the same way, without a branch. By
-/// default T{} for all.
+/// One value for all nodes (no bits in the mask), or one for each (all bits). Both are read in the same way, without a
+/// branch. By default T{} for all.
 template <class T>
 struct NodeValues {
     inline static const T none{};

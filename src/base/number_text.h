@@ -1,5 +1,5 @@
 #pragma once
-// Numbers in texts. They have a point whatever the locale of the program is that this library works in: strtod() and stod()
+// Numbers in texts. They have a point whatever the locale of the program that uses this library. strtod() and stod()
 // follow the locale, and Python and QGIS set one.
 #include <charconv>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #pragma once
 // Points for other programs: named columns with units, and the text formats. HDF5 and VTK live in io/hdf5_points.h and
-// vtk_io/points_vtp.h. Whoever has points to export makes a table of them; what the formats have in common is here.
+// vtk_io/points_vtp.h. A table holds points to export; what the formats have in common is here.
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -39,8 +39,8 @@ void require_finite(const PointTable& table);
 /// same bits. Throws UserError when the file cannot be written, InternalError as above.
 void write_points_csv(const std::filesystem::path& file, const PointTable& table);
 
-/// One JSON object: format, count, the constants, crs_wkt, the texts, units (name: unit), id, and an array per column,
-/// of arrays where it has several components. Numbers read back to the same bits. Throws as above.
+/// One JSON object: format, count, the constants, crs_wkt, the texts, units (name: unit), id, and an array per column.
+/// An array has arrays where it has several components. Numbers read back to the same bits. Throws as above.
 void write_points_json(const std::filesystem::path& file, const PointTable& table);
 
 }  // namespace frana

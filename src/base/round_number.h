@@ -4,7 +4,7 @@
 
 namespace frana {
 
-/// The largest of 1, 2, 2.5, 5, 10, ... and their tenths, hundredths and so on that is at most `most`, a number above 0.
+/// The largest of 1, 2, 2.5, 5, 10, ..., their tenths, hundredths and so on up to `most`, a number above 0.
 inline double round_number_below(double most) {
     const double power = std::pow(10.0, std::floor(std::log10(most)));
     double best = power;

@@ -1,7 +1,7 @@
 #pragma once
 // Four doubles as one value, by the compilers' vector extension: no intrinsics, any instruction set. Kernels use it in
-// two ways: four numbers of one node side by side, or one number of four points ("lanes"). All is
-// always inlined: files built for different instruction sets may share it.
+// two ways: four numbers of one node together, or one number of four points ("lanes"). All is always inlined: files
+// built for different instruction sets may share it.
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -104,7 +104,7 @@ template <class Real>
 [[gnu::always_inline]] inline Int4 floor_positive(Double4 a) { return __builtin_convertvector(a, Int4); }
 [[gnu::always_inline]] inline Double4 to_double(Int4 a) { return __builtin_convertvector(a, Double4); }
 
-/// {a0, a0, a2, a2} and {a1, a1, a3, a3}: of two numbers each for two pairs, the first and the second.
+/// {a0, a0, a2, a2} and {a1, a1, a3, a3}. Two pairs have two numbers each: the first ones and the second ones.
 [[gnu::always_inline]] inline Double4 first_of_pairs(Double4 a) { return __builtin_shufflevector(a, a, 0, 0, 2, 2); }
 [[gnu::always_inline]] inline Double4 second_of_pairs(Double4 a) { return __builtin_shufflevector(a, a, 1, 1, 3, 3); }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Memory for arrays that loops walk side by side.
+// Memory for arrays that one loop runs through together.
 #include <atomic>
 #include <cstddef>
 #include <new>
@@ -7,8 +7,8 @@
 
 namespace frana {
 
-/// Allocator whose blocks start at different cache lines of a page. Large blocks all come page-aligned from the system;
-/// a loop over some of them would then read and write addresses whose lower twelve bits agree, and processors take a read
+/// Allocator whose blocks start at different cache lines of a page. Large blocks all come page-aligned from the system.
+/// A loop over some of them would then read and write addresses whose lower twelve bits agree. Processors take a read
 /// behind such a write for dependent (4K aliasing: gathering took twice as long).
 template <class T>
 struct Staggered {
@@ -40,7 +40,7 @@ template <class Real>
 using ArrayOf = std::vector<Real, Staggered<Real>>;
 using Array = ArrayOf<double>;
 
-/// Sets the size; grows by no more than an eighth beyond what is asked for.
+/// Sets the size; grows by no more than an eighth beyond that.
 template <class Values>
 void resize_sparingly(Values& array, std::size_t count) {
     if (count > array.capacity()) array.reserve(count + count / 8);

@@ -1,7 +1,8 @@
 #pragma once
-// Reading ahead. Processors follow a few streams through memory by themselves; a loop that does much work on numbers from
-// a dozen arrays and as many rows of nodes loses them, and waits for memory at each new line. Short loops of plain reads
-// before it keep many lines under way: an eighth of a step. Prefetch instructions in the same places gained nothing.
+// Reading ahead. Processors follow a few streams through memory by themselves. A loop that does much work on numbers
+// from a dozen arrays and as many rows of nodes loses them. It then waits for memory at each new line. Short loops of
+// plain reads before it have many lines under way: an eighth of a step. Prefetch instructions in the same places gained
+// nothing.
 #include <cstddef>
 
 namespace frana {

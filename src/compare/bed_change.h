@@ -27,7 +27,7 @@ struct BedChangeErrors {
     /// (simulated - surveyed) / surveyed [1]; NaN when nothing was surveyed
     double eroded_error() const { return ratio(simulated.eroded - surveyed.eroded, surveyed.eroded); }
     double deposited_error() const { return ratio(simulated.deposited - surveyed.deposited, surveyed.deposited); }
-    /// Misplaced over surveyed volume [1]. 0: each pixel changes as surveyed; 1: the run changes nothing; 2: it changes
+    /// Misplaced over surveyed volume [1]. 0: each pixel changes as surveyed. 1: the run changes nothing. 2: it changes
     /// as much as was surveyed, but elsewhere.
     double misplaced_share() const { return ratio(misplaced, surveyed.all()); }
 
@@ -35,10 +35,10 @@ private:
     static double ratio(double a, double b) { return b > 0.0 ? a / b : Raster::nodata; }
 };
 
-/// What a second survey would see: the change of the bed and, with `lying`, the depth of what lies on it at the end [m].
-/// NaN where the run began (arrival time 0, when that is known) and where `later`, which may be null, is above 0, a release
-/// that entered after the start: what stood there before was no bed. All rasters are on one grid; no data counts as no
-/// change.
+/// What a second survey would see: the change of the bed [m]. With `lying` it adds the depth of what lies on it at the
+/// end [m]. NaN where the run began (arrival time 0, when that is known): what stood there before was no bed. NaN also
+/// where `later` is above 0, a release that entered after the start; it may be null. All rasters are on one grid; no
+/// data counts as no change.
 Raster surface_change(const Raster& bed_change, const Raster* lying, const Raster* arrival_time,
                       const Raster* later = nullptr);
 

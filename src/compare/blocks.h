@@ -1,6 +1,6 @@
 #pragma once
-// Heights held against surveyed ones by blocks: trifles decide on which pixel a thin flow comes to rest, but not how much of it
-// lies on an acre.
+// Heights compared with surveyed ones by blocks. Trifles decide on which pixel a thin flow stops, but not how much of
+// it lies on an acre.
 #include "terrain/raster.h"
 
 namespace frana {

@@ -10,7 +10,7 @@
 namespace frana {
 namespace {
 
-/// Distances are taken four times a pixel, which keeps the sampling well below the pixels' own coarseness.
+/// Distances are taken four times a pixel, so the sampling is well below the pixels' own coarseness.
 constexpr double steps_per_cell = 4.0;
 
 class Comparing {

@@ -10,10 +10,11 @@ struct ExpectedWidth {
     double release = Raster::nodata;  ///< of the release, across the steepest path [m]
 };
 
-/// The release is taken for the rectangle with its second moments, along and across the first part of the steepest
-/// path. A section of the valley across that path, filled until it holds the rectangle's section (volume over length),
-/// is as wide as the flow there; on open ground the release's width is. The path ends where the straight line to it
-/// from the release's middle falls less than `friction` [1] (0: at the edge of the terrain).
+/// The release is taken for the rectangle with its second moments. It lies along and across the first part of the
+/// steepest path. A section of the valley across that path is filled until it holds the rectangle's section (volume
+/// over length). It is as wide as the flow there. On open ground the release's width counts. The path ends where the
+/// straight line to it from the release's middle falls less than `friction` [1]. With 0 it ends at the edge of the
+/// terrain.
 ExpectedWidth expected_width(const Raster& bed, const Seeds& release, double friction);
 
 }  // namespace frana

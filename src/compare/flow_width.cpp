@@ -13,7 +13,7 @@
 namespace frana {
 namespace {
 
-/// Footprint in the smallest rectangle around it, with a rim of nodes that are not covered. Lengths in cells.
+/// Footprint in the smallest rectangle around it, with a border of nodes that are not covered. Lengths in cells.
 class Footprint {
 public:
     Footprint(const Raster& depth, double limit) {
@@ -74,8 +74,8 @@ private:
         }
     }
 
-    /// The nearest node that is not covered, of each node: exact, by lower envelopes of parabolas (Felzenszwalb and
-    /// Huttenlocher 2012), with the node that each parabola stands for.
+    /// The nearest node that is not covered, of each node. It is exact, by lower envelopes of parabolas (Felzenszwalb
+    /// and Huttenlocher 2012), with the node that each parabola stands for.
     void find_banks() {
         bank_i_.assign(covered_.size(), 0);
         bank_j_.assign(covered_.size(), 0);
@@ -86,7 +86,7 @@ private:
     void nearest_in_column(Index i) {
         const auto row = [&](Index j) -> std::int32_t& { return bank_j_[at(i, j)]; };
         for (Index j = 0; j < ny_; ++j) row(j) = covered(i, j) ? row(j - 1) : static_cast<std::int32_t>(j);
-        for (Index j = ny_ - 2; j >= 0; --j)  // the rim is not covered: there always is a next one
+        for (Index j = ny_ - 2; j >= 0; --j)  // the border is not covered: there always is a next one
             if (std::abs(row(j + 1) - j) < std::abs(row(j) - j)) row(j) = row(j + 1);
     }
 

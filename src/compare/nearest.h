@@ -6,10 +6,10 @@
 
 namespace frana {
 
-/// The point on the segment from a to b that is nearest to p, as a fraction of the way from a.
+/// The point on the segment from a to b that is nearest to p. It is given as a fraction of the way from a.
 double nearest_fraction(const Vec2& a, const Vec2& b, const Vec2& p);
 
-/// The edges of rings in a tree, so that a search looks only where the nearest may be.
+/// The edges of rings in a tree, so that a search visits only those that may be nearest.
 class NearestOnRings {
 public:
     explicit NearestOnRings(const Rings& rings);  ///< at least one ring

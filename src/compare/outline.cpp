@@ -11,8 +11,8 @@
 namespace frana {
 namespace {
 
-/// Edges between a pixel above the limit and one that is not, as directions out of the pixels' corners. Whoever
-/// walks along one has the pixel on the left.
+/// Edges between a pixel above the limit and one that is not, as directions out of the pixels' corners. On the way
+/// along an edge, the pixel is on the left.
 class EdgeWalk {
 public:
     EdgeWalk(const Raster& field, double limit) : grid_(field.geometry), columns_(grid_.nx + 1) {
@@ -69,7 +69,7 @@ private:
         }
     }
 
-    /// Left before straight on before right: where two pixels touch at a corner, the walk keeps to its own.
+    /// Left before straight on before right: where two pixels touch at a corner, the way stays at its own.
     int turn(Index corner, int direction) const {
         for (const int by : {1, 0, 3})
             if (leaves(corner, (direction + by) % 4)) return (direction + by) % 4;

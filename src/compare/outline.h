@@ -5,7 +5,7 @@
 
 namespace frana {
 
-/// The rings of polygons that do not overlap, turned as Rings wants them (outer counter-clockwise, holes clockwise).
+/// The rings of polygons that do not overlap, in the sense that Rings needs (outer counter-clockwise, holes clockwise).
 Rings rings_of(const Polygons& polygons);
 
 /// Area within the rings [m2].
@@ -23,7 +23,7 @@ struct OutlineDistance {
     double max = 0.0;   ///< Hausdorff distance of the outlines [m]
 };
 
-/// Both outlines are walked in steps of at most `step` [m]; from the middle of each step the distance to the other
+/// Both outlines are divided into steps of at most `step` [m]. From the middle of each step the distance to the other
 /// outline is exact. All NaN when one of them has no rings.
 OutlineDistance distance_between(const Rings& a, const Rings& b, double step);
 

@@ -40,7 +40,7 @@ std::vector<double> volumes_on(const GridGeometry& grid, const Raster& deposit) 
 
 double relative(double value, double reference) { return std::abs(value - reference) / std::abs(reference); }
 
-/// One way in which a run differs from the finest: whether by more than the rule allows, and both as text.
+/// One way in which a run differs from the finest. It tells whether by more than the rule allows, and both as text.
 struct Difference {
     bool allowed;
     std::string found, expected;

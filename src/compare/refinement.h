@@ -33,13 +33,13 @@ double covered_quantile(const Raster& values, const Raster& depth, double limit,
 /// Area in both footprints over the area in either. The pixels are overlaid as they lie; their grids need not agree.
 double footprints_iou(const Raster& depth, const Raster& finest, double limit);
 
-/// Share of a deposit's volume that would have to be moved to lie as the finest one does: 1 - sum of min / sum, in its
-/// own pixels, into which the finest deposit is summed exactly. NaN without a deposit.
+/// Share of a deposit's volume that would have to move to lie as the finest one does: 1 - sum of min / sum. It is
+/// taken in its own pixels, into which the finest deposit is summed exactly. NaN without a deposit.
 double share_elsewhere(const Raster& deposit, const Raster& finest);
 
-/// Order p of value = exact + constant cell^p through three cells, coarse to fine. Nothing where it has no meaning:
-/// differences that change sign, do not shrink as any order has them shrink, or are no larger than `resolution` [as
-/// value], to which the coarser values are known.
+/// Order p of value = exact + constant cell^p through three cells, coarse to fine. Nothing where it has no meaning.
+/// Then differences change sign, or do not shrink as any order has them shrink. Or they are no larger than `resolution`
+/// [as value], to which the coarser values are known.
 std::optional<double> observed_order(const std::array<double, 3>& cells, const std::array<double, 3>& values,
                                      double resolution);
 
@@ -56,7 +56,8 @@ struct ConvergenceRule {
 /// Difference between the farthest and the shortest runout, in cells; NaN where one is not known.
 double runout_spread(const std::vector<CellFigures>& runs);
 
-/// How far runs on one cell lie apart that differ in the `values` of a key only, against the rule of agreeing cells.
+/// How far runs on one cell lie apart that differ in the `values` of a key only. It is compared with the rule of
+/// agreeing cells.
 std::string spread_sentence(const std::string& key, const std::vector<double>& values,
                             const std::vector<CellFigures>& runs, const ConvergenceRule& rule = {});
 

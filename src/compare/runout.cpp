@@ -46,7 +46,7 @@ private:
 
     double height(Index node) const { return bed_.values[static_cast<std::size_t>(node)]; }
 
-    /// Node beside another, or `edge` where there is none with an elevation.
+    /// The adjacent node, or `edge` where there is none with an elevation.
     Index adjacent(Index node, const Neighbour& n) const {
         const GridGeometry& g = bed_.geometry;
         const Index i = node % g.nx + n.di, j = node / g.nx + n.dj;
@@ -118,7 +118,7 @@ Polyline steepest_path(const Raster& bed, const Vec2& start) {
     if (i < 0 || j < 0 || i >= g.nx || j >= g.ny || std::isnan(bed.at(i, j))) return {};
     Polyline line;
     for (const Index node : Drainage(bed).from(j * g.nx + i)) line.emplace_back(g.x(node % g.nx), g.y(node / g.nx));
-    constexpr Index reach = 5;  // takes out the eight directions of the grid, keeps the bends of a valley
+    constexpr Index reach = 5;  // takes out the eight directions of the grid, leaves the bends of a valley
     return smoothed(line, reach);
 }
 

@@ -7,9 +7,9 @@
 
 namespace frana {
 
-/// The way that water would take from a node to the edge of the terrain: to the lowest of the eight neighbours by
-/// slope (O'Callaghan & Mark 1984), out of hollows over their lowest rim (priority flood, Barnes et al. 2014),
-/// smoothed over eleven nodes. Nodata is an edge. Empty when the start has no elevation.
+/// The way that water would take from a node to the edge of the terrain. It goes to the lowest of the eight neighbours
+/// by slope (O'Callaghan & Mark 1984). Out of hollows it goes over their lowest edge (priority flood, Barnes et al.
+/// 2014). It is smoothed over eleven nodes. Nodata is an edge. Empty when the start has no elevation.
 Polyline steepest_path(const Raster& bed, const Vec2& start);
 
 /// Middle of a release: the released node nearest to the centroid of all of them; nothing when there are none.
@@ -19,9 +19,9 @@ std::optional<Vec2> release_middle(const Raster& arrival_time);
 /// Place along a path of its point nearest to p [m]; the last segment goes on without end.
 double place_along(const Polyline& path, const Vec2& p);
 
-/// The path's horizontal length up to the point of it that is nearest to the outline's farthest one [m]: the
+/// The path's horizontal length up to the point of it that is nearest to the outline's farthest one [m]. It is the
 /// largest, over the outline, of the place along the path of the nearest point on it. A path that ends too early goes
-/// on straight. NaN without rings. `step` [m]: how closely the outline's edges are looked at.
+/// on straight. NaN without rings. `step` [m]: how closely the outline's edges are sampled.
 double reach_along(const Polyline& path, const Rings& outline, double step);
 
 /// Straight horizontal distance from a point to the farthest one of an outline [m]; NaN without rings.

@@ -1,5 +1,5 @@
 #pragma once
-// What the way into 3D keeps, and what it does to the kinetic energy.
+// What the conversion to 3D conserves, and what it does to the kinetic energy.
 #include <string>
 #include <vector>
 

@@ -5,8 +5,8 @@
 
 namespace frana {
 
-/// A depth-averaged state as 3D conversion sees it: vertical columns of material, one array per quantity, equal lengths
-/// but for the stress and the domain, which may be absent (empty).
+/// A depth-averaged state for 3D conversion: vertical columns of material, one array per quantity. All have equal
+/// lengths but for the stress and the domain, which may be absent (empty).
 struct FlowColumns {
     std::vector<double> x, y;              ///< map position [m]
     std::vector<double> bed;               ///< elevation of the bed below [m]
@@ -26,8 +26,8 @@ struct FlowColumns {
     void take(const FlowColumns& other, std::size_t k);
 };
 
-/// Gradient of the bed at a map point: difference quotient over a cell of the bilinear bed, one-sided where half of
-/// that cell is not known; zero where all is unknown [1].
+/// Gradient of the bed at a map point [1]. It is the difference quotient over a cell of the bilinear bed. It is
+/// one-sided where half of that cell is not known. Zero where all is unknown.
 Vec2 bed_gradient(const Raster& bed, double x, double y);
 
 /// Fills slope_x and slope_y.

@@ -8,10 +8,10 @@ namespace frana {
 
 /// What stands over the pixels of a grid.
 struct GatheredFlow {
-    /// One column per pixel that holds points, row after row from the south-west: at the points' centre of mass, with
-    /// their mass, volume and mean horizontal velocity (momentum over mass); depth = volume / pixel area, so that air
-    /// between the points is squeezed out; bed pressure twice the points' mean over their volume, as where it is
-    /// hydrostatic. Bed, and slopes, of the raster at that place; id is the pixel's number. No stress.
+    /// One column per pixel that holds points, row after row from the south-west. It stands at the points' centre of
+    /// mass, with their mass, volume and mean horizontal velocity (momentum over mass). depth = volume / pixel area, so
+    /// that air between the points is squeezed out. The bed pressure is twice the points' mean over their volume, as
+    /// where it is hydrostatic. Bed, and slopes, of the raster at that place; id is the pixel's number. No stress.
     FlowColumns columns;
     std::vector<Index> pixel;     ///< of each column
     std::vector<double> top;      ///< elevation of its highest point [m]
@@ -20,8 +20,8 @@ struct GatheredFlow {
     double mass_outside = 0.0;    ///< their mass [kg]
 };
 
-/// Bins the points by the pixels of `bed` (half a cell around its nodes; a point on an edge belongs to the pixel
-/// north-east of it). Sums are compensated: mass, volume and momentum of a pixel are those of its points to round-off.
+/// Bins the points by the pixels of `bed`, half a cell around its nodes. A point on an edge belongs to the pixel
+/// north-east of it. Sums are compensated: mass, volume and momentum of a pixel are those of its points to round-off.
 GatheredFlow points_to_columns(const SolidPoints& points, const Raster& bed);
 
 /// Depth [m] and velocity [m/s] of all pixels, 0 where there are no points, nodata where the bed is unknown.

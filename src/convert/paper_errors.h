@@ -1,7 +1,7 @@
 #pragma once
-// The error measures of Fois, de Falco, Formaggia (2025), eq. (4): how far the points' masses and momenta are from
-// those of points that were all alike. They are absolute and shrink with the points themselves; what conversion keeps
-// is in conservation.h.
+// The error measures of Fois, de Falco, Formaggia (2025), eq. (4). They tell how far the points' masses and momenta are
+// from those of points that were all alike. They are absolute and shrink with the points themselves; what conversion
+// conserves is in conservation.h.
 #include <functional>
 
 #include "convert/solid_points.h"
@@ -26,7 +26,7 @@ struct ExactTotals {
     double momentum = 0.0;  ///< along x [kg m/s]
 };
 
-/// Of plug-flow points that columns_to_points() would make, found column by column: their number may be beyond any
+/// Of plug-flow points that columns_to_points() would make, found column by column. Their number may be beyond any
 /// memory (the paper's finest has 1e12). `column` is called twice for each index.
 ConversionErrors conversion_errors(Index columns, const std::function<ErrorColumn(Index)>& column, double spacing,
                                    const ExactTotals& exact);

@@ -11,8 +11,8 @@
 namespace frana {
 
 /// What is done with the velocity across the bed. zero: none, as the paper has it (eq. 3). along_bed: w = v . grad Z in
-/// every layer, so that nothing is driven into the ground or off it: a flow of 20 m/s on 30 degrees would hit the bed
-/// with 11.5 m/s otherwise, and a quarter of the kinetic energy along the bed would be lost.
+/// every layer, so that nothing is driven into the ground or off it. Otherwise a flow of 20 m/s on 30 degrees would hit
+/// the bed with 11.5 m/s. A quarter of the kinetic energy along the bed would be lost.
 enum class Vertical { zero, along_bed };
 
 struct ConversionChoice {
@@ -49,12 +49,12 @@ double forecast_points(const FlowColumns& columns, double spacing);
 /// Memory that a point of SolidPoints takes [bytes].
 constexpr double kBytesPerPoint = 8.0 * (3 + 3 + 1 + 1 + 1 + 6 + 1 + 1);
 
-/// The points. Each column gives layer_count() points of equal mass and volume above one another; they share its
+/// The points. Each column gives layer_count() points of equal mass and volume above one another. They share its
 /// horizontal velocity by the profile, whose mean over the layers is one. The pressure is hydrostatic, from the
-/// column's bed pressure at the bed to zero at the free surface. The stress is minus that pressure, and the mean stress
-/// of the rheology (without change of volume: zz = -xx - yy; its vertical shear is not in a depth-averaged state).
-/// Deterministic for any number of threads. Throws UserError for a spacing that is not positive; InternalError when
-/// the columns' arrays differ in length.
+/// column's bed pressure at the bed to zero at the free surface. The stress is minus that pressure, plus the mean
+/// stress of the rheology. That is without change of volume, zz = -xx - yy; its vertical shear is not in a
+/// depth-averaged state. Deterministic for any number of threads. Throws UserError for a spacing that is not positive;
+/// InternalError when the columns' arrays differ in length.
 SolidPoints columns_to_points(const FlowColumns& columns, const ConversionChoice& choice);
 
 }  // namespace frana

@@ -32,7 +32,7 @@ bool near_box(const std::pair<Vec3, Vec3>& box, const Vec2& place, double margin
     return ((place - low.head<2>()).array() >= -margin).all() && ((high.head<2>() - place).array() >= -margin).all();
 }
 
-/// Whether a place is within `distance` of a barrier in plan, below its top: the box of a bent wall holds far more.
+/// Whether a place is within `distance` of a barrier in plan, below its top. The box of a bent wall holds far more.
 bool stands_near(const Surface& barrier, const std::pair<Vec3, Vec3>& box, const Vec3& x, double distance,
                  double cell) {
     if (!near_box(box, x.head<2>(), distance)) return false;
@@ -52,7 +52,7 @@ std::optional<Contact> nearest_face(const Surface& barrier, const Vec3& x, doubl
     return list[0];
 }
 
-/// Whether the way from a place beside a barrier to another one leads over it, however thin it is.
+/// Whether the way from a place outside of a barrier to another one leads over it, however thin it is.
 bool crosses(const Surface& barrier, const std::pair<Vec3, Vec3>& box, const Vec2& from, const Vec2& to) {
     const auto& [low, high] = box;
     const double z = barrier.shape ? 0.5 * (low.z() + high.z()) : high.z() - 1e6;  // footprints reach down without end
@@ -77,15 +77,15 @@ NodeBox nodes_around(const std::pair<Vec3, Vec3>& box, const GridGeometry& g) {
 
 /// Whether a node stands in a barrier, or within half a cell of it.
 bool is_in_reach(const Surface& barrier, const Vec2& node, double top, double cell) {
-    if (barrier.shape) return true;  // top_near() has looked there
+    if (barrier.shape) return true;  // top_near() has checked there
     const Vec3 below(node.x(), node.y(), top - 2.0 * cell);
     Contact contact[kMostContacts];
     return barrier.prism->inside(below) ||
            (barrier.prism->contacts(below, cell, contact) > 0 && contact[0].distance <= 0.5 * cell);
 }
 
-/// Cells that make a wall along a line as thick as columns see it: as points will meet it, so that none of them starts
-/// inside; where there are none, and no thickness is given, a cell thick (least_wall_thickness() is three of them).
+/// Cells that make a wall along a line as thick for columns as points will meet it. So none of them starts inside.
+/// Where there are no points, and no thickness is given, it is a cell thick (least_wall_thickness() is three of them).
 double cell_for_columns(const Barrier& barrier, const Scene& scene) {
     if (scene.solid) return scene.solid->cell;
     return barrier.thickness ? 0.0 : scene.bed.geometry.cell / 3.0;
@@ -448,8 +448,8 @@ double share_inside(const Vec2& from, const Vec2& to, const std::array<double, 4
     return std::max(0.0, last - first);
 }
 
-/// Of a barrier's foot on the terrain the share that lies in the window of points: of its outline, of its line, or of the
-/// outline of a shape's box [1].
+/// The share of a barrier's foot on the terrain that lies in the window of points [1]. The foot is its outline, its
+/// line, or the outline of a shape's box.
 double share_in_window(const Barrier& barrier, const std::pair<Vec3, Vec3>& box, const Scene& scene) {
     const GridGeometry& g = scene.bed.geometry;
     const std::array<double, 4> window = window_of(scene), terrain = {g.x0, g.y0, g.x_max(), g.y_max()};
@@ -547,8 +547,9 @@ void BarrierWatch::accumulate_loads(const Mpm3d& flow) {
         if (!loads_.barriers[n].touched) loads_.barriers[n].touched = is_touched(n, flow);
 }
 
-/// Nodes push what is still a cell away, and so slow down what comes fast. So it is there at the time at which it would have
-/// been without, when it is no farther than half a cell; at the latest when half of a point's width is left.
+/// Nodes exert force on what is still a cell away, and so slow down what comes fast. So a point touches at the time of
+/// its undisturbed arrival, when it is no farther than half a cell. At the latest it touches when half of its width is
+/// left.
 bool BarrierWatch::is_touched(std::size_t n, const Mpm3d& flow) {
     const auto has_impulse = [](const FaceLoad& face) { return !face.impulse.isZero(0.0); };
     const std::vector<FaceLoad>& faces = loads_.barriers[n].faces;
@@ -585,7 +586,7 @@ void BarrierWatch::sample(const Mpm3d& flow) {
             std::uint8_t& place = place_of(n, flow.body().points.id[p]);
             if (place == over) continue;
             const double top = top_of(solid, x.head<2>()), volume = flow.body().points.mass[p] / density_;
-            if (!std::isfinite(top) || x.z() < top - cell) {  // beside it, or below what it spans
+            if (!std::isfinite(top) || x.z() < top - cell) {  // outside of it, or below what it spans
                 place = below;
                 continue;
             }

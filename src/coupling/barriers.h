@@ -1,5 +1,5 @@
 #pragma once
-// Barriers as both models see them.
+// Barriers in both models.
 #include <algorithm>
 #include <map>
 #include <string>
@@ -14,13 +14,11 @@
 
 namespace frana {
 
-/// The solid of a barrier for material on cells of that size: walls along a line are thick enough that both
-/// of their sides are kept apart. Throws UserError for an outline without area or a line that turns too
-/// sharply.
+/// The solid of a barrier for material on cells of that size. Walls along a line are so thick that both of their sides
+/// are separate. Throws UserError for an outline without area or a line that turns too sharply.
 Prism solid_of(const Barrier& barrier, const Raster& bed, double cell);
 
-/// The bed as columns see it: where a node lies in a barrier, or within half a cell of it, as high as its
-/// top.
+/// The bed for columns. Where a node lies in a barrier, or within half a cell of it, the bed rises to its top.
 Raster with_barriers(const Scene& scene);
 
 /// A node within a barrier, or within half a cell of it.
@@ -39,8 +37,8 @@ struct Footings {
 };
 
 /// Puts barriers into a scene whose first node is (i0, j0) of the one that their nodes were found in. The bed rises to their
-/// tops, and no tree stands there or a cell around. Ground below a top, under it and a cell around, is firm from then on: a
-/// barrier that stands has a footing that holds.
+/// tops, and no tree stands there or a cell around. Ground below a top, under it and a cell around, is firm from then
+/// on. A barrier that stands has a footing that holds.
 Footings stand_in(Scene& scene, const std::vector<BarrierNode>& nodes, Index i0, Index j0);
 
 /// What a report says of them; nothing without any.
@@ -55,11 +53,11 @@ Surface surface_around(const Barrier& barrier, const Scene& scene);
 /// Lowest and highest corner of the box around a barrier; of a shape without the room around it [m].
 std::pair<Vec3, Vec3> box_around(const Surface& barrier);
 
-/// Elevation of a barrier's top at a place of the map; minus infinity beside it [m].
+/// Elevation of a barrier's top at a place of the map; minus infinity outside of it [m].
 double top_of(const Surface& barrier, const Vec2& place);
 
-/// Columns within a barrier's outline stand on it, which is ground to them: points inside it would be pushed out and gain
-/// what that lifts them.
+/// Columns within a barrier's outline stand on it, which is ground to them. Points inside it would be forced out and
+/// gain what that lifts them.
 void stand_on_barriers(FlowColumns& columns, const std::vector<Surface>& surfaces);
 
 /// A column's place in the map [m], and what it reaches up to and holds there.
@@ -94,7 +92,7 @@ private:
     std::vector<std::size_t> begin_{0, 0};  ///< of each tile in `numbers_`, and the end
 };
 
-/// Which columns run up barriers and over them. Nothing tells how hard they push: barriers are ground to them.
+/// Which columns run up barriers and over them. Their force on barriers is not known: barriers are ground to them.
 class ColumnWatch {
 public:
     explicit ColumnWatch(const Scene& scene);
@@ -105,8 +103,8 @@ public:
     /// Whether a barrier may be within two cells of a place: elsewhere there is nothing to sample.
     bool is_near(const Vec2& place) const { return tiles_.barriers_at(place).first != nullptr; }
     /// Takes a column's place, once a round where it is near. It counts when its way from the last place first leads onto a
-    /// barrier, and once; a column that was not near before has no way yet. Of two that merge the one that keeps its number
-    /// counts for both from then on.
+    /// barrier, and once. A column that was not near before has no way yet. Of two that merge the one whose number
+    /// remains counts for both from then on.
     void sample(const ColumnAt& column);
     /// After a step of columns, which note their parents, from the time `before` on: whether a round is due. It is when one
     /// may have moved by half a cell, and at `until`, an output time.
@@ -124,8 +122,9 @@ private:
     bool is_on_top(const Vec2& place) const;
     /// Whether a barrier raises the bed at a node.
     bool is_raised(const Vec2& node) const;
-    /// Elevation of the top of what stands at a place [m]: of the nodes around it that no barrier raises, or half of the
-    /// barrier's height would count as run up. Not a number where barriers raise all that are wet.
+    /// Elevation of the top of what stands at a place [m]. It is of the nodes around it that no barrier raises.
+    /// Otherwise half of the barrier's height would count as run up. Not a number where barriers raise all that are
+    /// wet.
     double adjacent_surface(const DepthAveraged& columns, const Vec2& place) const;
     void sample_at(std::size_t n, const ColumnAt& column, const Vec2* from);
     std::vector<Surface> surfaces_;             ///< of each barrier
@@ -153,11 +152,11 @@ public:
     void accumulate_loads(const Mpm3d& flow);
     /// A point was split: what is known of it holds for its half.
     void inherit(Index child, Index parent);
-    /// Takes run-up, and what came over the barriers from beside them.
+    /// Takes run-up, and what came over the barriers from either side.
     void sample(const Mpm3d& flow);
     /// There are no points any more: from now on no force is known.
     void end() { loads_.measures = false; }
-    /// Columns beside the points, of which `after` is the watch, `before` its loads before the last round.
+    /// Columns adjacent to the points, of which `after` is the watch, `before` its loads before the last round.
     void add(const BarrierLoads& before, const BarrierLoads& after);
     const BarrierLoads& loads() const { return loads_; }
     /// Of what the forces are not, in a stage that begins at `from` [s].
@@ -179,7 +178,7 @@ private:
     std::vector<double> due_;  ///< of each: when the first point comes to it, at the speed it came with [s]
     BarrierLoads loads_;
     RunUp reached_;          ///< at one barrier at a time
-    double density_, ramp_;  ///< ramp: of a barrier as columns see it [m]
+    double density_, ramp_;  ///< ramp: of a barrier for columns [m]
     double placed_ = 0.0;    ///< of points that came to be on top of barriers [m3]
 };
 

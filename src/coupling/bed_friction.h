@@ -6,9 +6,10 @@
 
 namespace frana {
 
-/// The deceleration of a flow that is as deep and as fast as the points, and columns beside them, are there on the whole, over
-/// its normal acceleration, by the law of the nearest node. The lowest points are slower than the rest where material shears, and a bed law is one of the mean speed. Where
-/// no points stand in the map it is the friction of the slowest flow. THEORY.md (12).
+/// The deceleration of the mean flow at a place over its normal acceleration, by the law of the nearest node. That flow
+/// is as deep and as fast as the points and adjacent columns there on the whole. The lowest points are slower than the
+/// rest where material shears. A bed law is one of the mean speed. Where no points stand in the map it is the friction
+/// of the slowest flow. THEORY.md (12).
 class BedFriction final : public SurfaceFriction {
 public:
     /// Both outlive this. `map` may follow the points between steps.
@@ -21,8 +22,8 @@ private:
     const FlowMap& map_;
 };
 
-/// The friction coefficient of the scene's bed law at a place on the map, under a flow with that depth along gravity [m] and
-/// speed along the bed [m/s]. The cosine is that of the bed's slope.
+/// The friction coefficient of the scene's bed law at a place on the map. The flow there has that depth along gravity
+/// [m] and that speed along the bed [m/s]. The cosine is that of the bed's slope.
 double friction_of_flow(const Scene& scene, const Vec2& place, const FlowMap::Mean& flow);
 
 }  // namespace frana

@@ -101,7 +101,7 @@ void FlowMap::set_adjacent(const FlowColumns& columns) {
     }
 }
 
-/// One thread: it takes a hundredth of the steps between two looks.
+/// One thread: it takes a hundredth of the steps between two samples.
 void FlowMap::sample(const Mpm3d& flow, double time) {
     std::fill(nodes_.begin(), nodes_.end(), Node{});
     for (Index p = 0; p < flow.body().points.count(); ++p) {

@@ -26,8 +26,7 @@ public:
     void sample(const Mpm3d& flow, double time);
 
     const GridGeometry& grid() const { return grid_; }
-    /// Volume without stress over the area of a cell: a pile of air and drops is as deep as if it had settled
-    /// [m].
+    /// Volume without stress over the area of a cell [m]. A pile of air and drops is as deep as if it had settled.
     double depth(Index k) const {
         return nodes_[static_cast<std::size_t>(k)].mass / (density_ * areas_[static_cast<std::size_t>(k)]);
     }
@@ -40,7 +39,7 @@ public:
     double cosine(Index k) const {
         return 1.0 / std::sqrt(steepening_[static_cast<std::size_t>(k)]);
     }  ///< of the slope
-    /// Columns that stand beside the points from now on: mean_at() counts them too.
+    /// Columns that are adjacent to the points from now on: mean_at() counts them too.
     void set_adjacent(const FlowColumns& columns);
     /// Of the flow between the nodes, bilinear; beyond them the nearest. The speed is that of the common momentum, up and down
     /// included.
@@ -70,7 +69,7 @@ private:
     std::vector<double> areas_;       ///< of the nodes' cells, without what walls and barriers take of them [m2]
     std::vector<double> steepening_;  ///< 1 + |grad Z|^2 at the nodes
     std::vector<Node> nodes_;
-    std::vector<Node> adjacent_;          ///< of the columns beside; empty: none were ever told
+    std::vector<Node> adjacent_;          ///< of the adjacent columns; empty: none were ever set
     std::vector<Index> adjacent_places_;  ///< nodes that have any of that
     std::vector<NodePeak> peaks_;
     FlowExtent extent_;

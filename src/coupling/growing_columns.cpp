@@ -29,18 +29,18 @@ void lay_over(Raster& bed, const Raster& part, Index i0, Index j0) {
 
 GrowingColumns::GrowingColumns(const Scene& scene, Start start)
     : scene_(scene), wider_(scene.wider), held_(wider_->held) {
-    scene_.wider.reset();  // what the columns have is all that they know of
+    scene_.wider.reset();  // the columns depend on nothing but what they have
     find_barriers();
     columns_ = columns_among_walls(start);
     shown_ = cells_of(wider_->shown, wider_->grid);
     const std::vector<double>& volume = scene_.particles.volume;
     const double largest = volume.empty() ? 0.0 : *std::max_element(volume.begin(), volume.end());
     scene_.particles = {};
-    scene_.particles.volume = {largest};  // what may split hangs on it, also when a kept part is taken up again
+    scene_.particles.volume = {largest};  // what may split depends on it, also when a saved part is restored
     if (start == Start::placed) sample();
 }
 
-/// Barriers stand on the part that the run begins with: a larger one has the same tops, to the last bit.
+/// Barriers stand on the part that the run begins with. A larger one has the same tops, to the last bit.
 void GrowingColumns::find_barriers() {
     barrier_nodes_ = barrier_nodes(scene_);
     for (BarrierNode& node : barrier_nodes_) node.i += held_.i0, node.j += held_.j0;
@@ -78,8 +78,8 @@ void GrowingColumns::sample() {
     if (!(room == held_)) grow(room);
 }
 
-/// The part that material needs: as it is while material is so many nodes clear of the edges, half as large again
-/// beyond those it is not.
+/// The part that material needs. It stays as it is while material is so many nodes clear of the edges. Beyond those
+/// that it is not clear of, the part is half as large again.
 NodeBox GrowingColumns::room_for(const NodeBox& worked, Index clear) const {
     const NodeBox needed = common(widened(worked, clear), NodeBox::all(wider_->grid));
     const Index more_x = std::max(kGrowAtLeast, held_.nx / 2), more_y = std::max(kGrowAtLeast, held_.ny / 2);
@@ -91,8 +91,8 @@ NodeBox GrowingColumns::room_for(const NodeBox& worked, Index clear) const {
     return common(room, NodeBox::all(wider_->grid));
 }
 
-/// Elevations of another part of the terrain, that held now among them. Where some are missing it is all of the terrain: what
-/// is outside of it, and what is a hole in it, is known of the whole only.
+/// Elevations of another part of the terrain, that held now among them. Where some are missing it is all of the
+/// terrain. Only the whole shows what is outside of it, and what is a hole in it.
 void GrowingColumns::hold(NodeBox box) {
     Raster bed = read_part(box);
     const NodeBox all = NodeBox::all(wider_->grid);

@@ -7,8 +7,8 @@
 
 namespace frana {
 
-/// The elevation below which 99.9 % of the mass at a place lies at one moment. Single drops do not count: more than two
-/// points have to be above it as well, where there are that many. Room is kept from one moment to the next.
+/// The elevation below which 99.9 % of the mass at a place lies at one moment. Single drops do not count: where there
+/// are that many points, more than two have to be above it. Its memory is reused from one moment to the next.
 class RunUp {
 public:
     void begin() { reached_.clear(), mass_ = 0.0; }

@@ -24,8 +24,8 @@ std::pair<double, double> ground_of(const Scene& scene) {
     return {low, high};
 }
 
-/// Ground where nothing is known of it, outside the window: that of the neighbour before it in the row or the
-/// column, and for what is left that behind it.
+/// Ground where it is unknown, outside the window. It is that of the neighbour before it in the row or the column. For
+/// what is left it is that behind it.
 Raster without_gaps(Raster bed) {
     const Index nx = bed.geometry.nx, ny = bed.geometry.ny;
     const auto take = [&](Index i, Index j, Index di, Index dj) {
@@ -57,8 +57,8 @@ SolidLaw law_of(const SolidStage& stage, double density, const SolidStart& start
     return solid::DruckerPrager::of(solid::Elastic::of(young, kPoisson), std::atan(start.friction), 0.0);
 }
 
-/// Cells that a 3D grid has beyond a side, so that nodes that points and images touch exist: beside
-/// walls; and at open sides as many as a point needs, so that it leaves where the side is (solid_kernel.cpp).
+/// Cells that a 3D grid has beyond a side. At walls the nodes of points and mirror particles then exist. At open
+/// sides they are as many as a point needs, so that it leaves where the side is (solid_kernel.cpp).
 constexpr double kBehindWalls = 3.0, kAtOpenSides = 0.5;
 
 }  // namespace
@@ -96,8 +96,8 @@ std::vector<std::uint8_t> nodes_in_window(const Scene& scene) {
 }
 
 std::vector<std::uint8_t> nodes_at_edge(const Scene& scene) {
-    // Points come out by a cell of the terrain, they and columns reach 3/2 cells of space each, and columns are half a
-    // cell of the terrain wide each way.
+    // Points come out by a cell of the terrain. They and columns reach 3/2 cells of the 3D grid each. Columns are half
+    // a cell of the terrain wide each way.
     const double cell = scene.bed.geometry.cell;
     const auto more = static_cast<Index>(std::ceil((1.5 * cell + 3.0 * scene.solid->cell) / cell));
     std::array<Index, 4> box = scene.solid->window;
@@ -114,8 +114,9 @@ double squared_speed(const FlowColumns& columns, std::size_t k) {
     return columns.vx[k] * columns.vx[k] + columns.vy[k] * columns.vy[k] + climb * climb;
 }
 
-/// What brakes the columns at the bed, or will once they flow as fast as their slope lets them: then friction is the slope.
-/// A mean by mass: a film at the margin, which drag brakes most, says nothing of what the flow needs inside.
+/// What brakes the columns at the bed, or will once they flow as fast as their slope lets them. Then friction is the
+/// slope. It is a mean by mass. A film at the margin, which drag brakes most, says nothing of what the flow needs
+/// inside.
 double mean_friction(const Scene& scene, const FlowColumns& columns) {
     constexpr double kSteepest = 1.0;  // no sand stands steeper than 45 degrees
     double sum = 0.0, mass = 0.0;
@@ -129,8 +130,8 @@ double mean_friction(const Scene& scene, const FlowColumns& columns) {
     return mass > 0.0 ? sum / mass : 0.0;
 }
 
-/// The largest friction at rest of a node in the window: where the bed brakes more than sand does inside, sand would shear above
-/// the bed, whatever friction a zone has.
+/// The largest friction at rest of a node in the window. Where the bed brakes more than sand does inside, sand would
+/// shear above the bed, whatever friction a zone has.
 double largest_at_rest(const Scene& scene) {
     if (!scene.bed_laws()) return friction_at_rest(scene.bed_law);
     const std::array<Index, 4>& w = scene.solid->window;
@@ -149,8 +150,8 @@ double friction_inside(const Scene& scene, const FlowColumns& columns) {
     return std::max(largest_at_rest(scene), at_bed);
 }
 
-/// The speed that a column's whole weight, as shear at the bed, drives a fluid or mud to; `fall` at most, the speed that the
-/// way down gives [m/s].
+/// The speed that a column's whole weight, as shear at the bed, gives a fluid or mud [m/s]. It is `fall` at most, the
+/// speed that the way down gives.
 double own_speed(const SolidLaw& law, double density, double gravity, double depth, double fall) {
     const auto of = [&](double viscosity, double yield_stress) {
         const double sheared = std::max(0.0, density * gravity * depth - yield_stress) * depth;

@@ -17,19 +17,19 @@ struct SolidStart {
     bool stuck = false;     ///< the lowest material does not slide on the bed
 };
 
-/// Sound ten times as fast as the fastest of `columns`, or as one that falls by its own depth, so that the
-/// density changes by 1 % (Monaghan 1994); room four times as high above the lowest ground as their energy
-/// reaches. A first contact with a barrier lasts as long as sound takes through the flow: means over twenty
-/// times that know nothing of it.
+/// Sound is ten times as fast as the fastest of `columns`, or as one that falls by its own depth. So the density
+/// changes by 1 % (Monaghan 1994). There is room four times as high above the lowest ground as their energy reaches. A
+/// first contact with a barrier lasts as long as sound takes through the flow. Means over twenty times that do not
+/// depend on it.
 SolidStart choose_start(const Scene& scene, const FlowColumns& columns);
 
-/// Largest cell that resolves how a flow of fluid or mud shears above a bed that holds it [m]: there the speed over
+/// Largest cell that resolves how a flow of fluid or mud shears above a bed that holds it [m]. There the speed over
 /// three quarters of a cell is at most the shear velocity. Any cell, of what has no such stress. THEORY.md (13).
 double resolving_cell(const SolidLaw& law, double density, double depth, double speed);
 
 /// Grid, law and surfaces of scene.solid, without points. The ground comes first, then the window's closed sides,
-/// then the barriers in their order. Open sides lie a cell of the terrain's grid outside the
-/// window: columns that cross its edge are wider than a point.
+/// then the barriers in their order. Open sides lie a cell of the terrain's grid outside the window. Columns that cross
+/// its edge are wider than a point.
 SolidScene solid_scene(const Scene& scene, const SolidStart& start);
 
 /// [xmin, ymin, xmax, ymax] of the window [m]: the edges of its nodes' cells, or the outer nodes of the
@@ -42,8 +42,8 @@ std::array<double, 4> reach_of(const Scene& scene);
 /// Nodes of the terrain in the window: 1; row after row from the south.
 std::vector<std::uint8_t> nodes_in_window(const Scene& scene);
 
-/// These, and besides those around the window's open sides whose columns points can feel: as far out as points may
-/// come, and their nodes and those of what stands there reach.
+/// These, and besides those around the window's open sides whose columns points can feel. They go as far out as points
+/// may come. They include the reach of their nodes and of what stands there.
 std::vector<std::uint8_t> nodes_at_edge(const Scene& scene);
 
 }  // namespace frana

@@ -11,9 +11,9 @@ class Archive;
 class Mpm3d;
 struct Scene;
 
-/// No material of a run can be faster at an elevation than what falls there from the highest head of its release:
-/// V <= sqrt(2 g (available - z)). Some points of fluids may pass it, as spray does that the rest drives; by more than
-/// one per cent of that speed they are counted, with what the others did.
+/// No material can be faster at an elevation than what falls there from the highest head of its release. So V
+/// <= sqrt(2 g (available - z)). Some points of fluids may pass it, as spray does that the rest drives. Those that do
+/// by more than one per cent of that speed are counted, with what the others did.
 class Spray {
 public:
     /// Of a scene with its particles.
@@ -25,8 +25,8 @@ public:
     void serialize(Archive& archive);
 
     double available() const { return available_; }    ///< highest surface plus v^2 / 2g of the release [m]
-    double most_share() const { return most_share_; }  ///< of the points' mass above it, at the worst look [1]
-    double fastest() const { return fastest_; }        ///< of the points that stay below it, of all looks [m/s]
+    double most_share() const { return most_share_; }  ///< of the points' mass above it, at the worst sample [1]
+    double fastest() const { return fastest_; }        ///< of the points that stay below it, of all samples [m/s]
 
 private:
     double gravity_, available_ = 0.0;

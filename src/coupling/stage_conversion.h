@@ -20,17 +20,18 @@ FlowColumns columns_of(const Frame& frame, const std::vector<Mat2>& domains, con
 std::vector<Mat2> domains_of(const Columns& columns, double cell, const Scheme& scheme);
 Mat2 domain_of(const Edges& edges, double cell);
 
-/// The seeds of a release as columns, at rest or not; those in marked nodes' cells, or without `marks` all, in their order.
+/// The seeds of a release as columns, at rest or not. They are those in marked nodes' cells, or without `marks` all, in
+/// their order.
 FlowColumns columns_of(const Seeds& seeds, const Scene& scene, const std::vector<std::uint8_t>& marks);
 
-/// Each column as m x n of them side by side on its domain, so many that they are about `spacing` apart; fewer where the parts
-/// would weigh less than an eighth of a full point. Columns without a domain stand on the square of their volume / depth. Edges
-/// longer than `widest` count as that. Beds and slopes are those of `bed` below each part. Parts stay within `extent`. Mass,
-/// volume and momentum are those of the column.
+/// Each column as m x n of them on its domain, so many that they are about `spacing` apart. There are fewer where the
+/// parts would have less than an eighth of a full point's mass. Columns without a domain stand on the square of their
+/// volume / depth. Edges longer than `widest` count as that. Beds and slopes are those of `bed` below each part. Parts
+/// stay within `extent`. Mass, volume and momentum are those of the column.
 FlowColumns in_parts(const FlowColumns& columns, double spacing, double widest, const Raster& bed,
                      const std::array<double, 4>& extent);
 
-/// How many parts in_parts() makes, and how many 3D points they become: asked before either takes memory.
+/// How many parts in_parts() makes, and how many 3D points they become. It is computed before either takes memory.
 struct PartsForecast {
     double columns = 0.0, points = 0.0;
 };
@@ -49,9 +50,10 @@ struct MovingColumns {
     std::vector<Mat2> gradient;
 };
 
-/// Points that left as columns: one for all of them in each quarter of a cell of the terrain, at their centre of mass, with
-/// their mass and momentum. Until then they went on at the speed that they had; so their velocities are half a step behind their places, as those of columns are. They are as deep as what is there, and at least
-/// as all that is new on their quarter.
+/// Points that left as columns: one for all of them in each quarter of a cell of the terrain. It is at their centre of
+/// mass, with their mass and momentum. Until then they went on at the speed that they had. So their velocities are half
+/// a step behind their places, as those of columns are. They are as deep as what is there, and at least as all that is
+/// new on their quarter.
 MovingColumns columns_of(const std::vector<DepartedPoint>& points, const Scene& scene, const ColumnsAt& at);
 
 /// The points of columns (convert/solid_points.h) for the solver.

@@ -10,8 +10,8 @@
 namespace frana {
 namespace {
 
-/// Adds to nodes along an axis; beyond walls to the mirror image, and to a node on a wall its own mirror image too, as
-/// columns deposit there. Beyond open sides nothing.
+/// Adds to nodes along an axis. Beyond walls it adds to the mirror node. To a node on a wall it adds its own mirror
+/// part too, as columns deposit there. Beyond open sides nothing.
 struct Along {
     Index node[3];
     double w[3];
@@ -54,8 +54,9 @@ void StagedRun::show_points() {
     });
 }
 
-/// Those on their way into the window first, in their order; then those around it. And the gradients of their velocities:
-/// without them the nodes that both sides share would take columns that are faster, for being farther on, for a push.
+/// Those on their way into the window first, in their order; then those around it. And the gradients of their
+/// velocities. Columns farther on are faster. Without the gradients the nodes that both sides share would take that for
+/// a force.
 FlowColumns StagedRun::columns_at_edge(std::vector<Mat2>& gradients) const {
     const GridGeometry& g = scene_.bed.geometry;
     Seeds seeds;
@@ -92,8 +93,8 @@ FlowColumns StagedRun::columns_at_edge(std::vector<Mat2>& gradients) const {
     return columns;
 }
 
-/// As the points that they will be when they cross the edge, but each with the column's velocity at its place: what widens
-/// sinks, as it does in nature, in proportion to the height above the bed.
+/// They are the points that they will be beyond the edge, but each with the column's velocity at its place. What
+/// widens sinks, as it does in nature, in proportion to the height above the bed.
 GhostParticles StagedRun::ghosts_of(const FlowColumns& columns, const std::vector<Mat2>& gradients) const {
     const GridGeometry& g = scene_.bed.geometry;
     const FlowColumns parts =

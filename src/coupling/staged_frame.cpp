@@ -35,7 +35,7 @@ Frame StagedRun::frame() {
     return frame;
 }
 
-/// Columns keep what they have of the fields that both share; stress is xx, yy, zz, xy, yz, xz.
+/// Columns retain what they have of the fields that both share; stress is xx, yy, zz, xy, yz, xz.
 void StagedRun::particle_fields(Frame& frame) {
     const std::vector<Field> columns = std::move(frame.particles);
     frame.particles.clear();

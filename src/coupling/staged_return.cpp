@@ -18,8 +18,8 @@ bool in_hole_wall(const Flow& flow, const Vec2& x) {
 
 }  // namespace
 
-/// Of the points that left, those that left where columns may stand: beyond the window's open sides, or onto a wall in a
-/// hole there, before which they then stand. Until they are columns the others go on to feel them.
+/// Of the points that left, those that left where columns may stand. That is beyond the window's open sides, or onto a
+/// wall in a hole there, before which they then stand. Until they are columns the others go on to feel them.
 void StagedRun::note_departed() {
     for (const DepartedPoint& point : points_->take_departed()) {
         const Vec2 x = point.position.head<2>();
@@ -29,11 +29,11 @@ void StagedRun::note_departed() {
     }
 }
 
-/// Where a column of a point that has come to `to` stands: there; or where it left; or, where a barrier raises the ground of
-/// columns that the point is not above, or a hole has a wall, before them on its own side.
-/// Where the window ends so near to a barrier that columns have no cell there, it is one of the window, which they leave again
-/// in their next step: on the barrier they would gain its height. Not so before a hole. Points do not feel its wall, and would
-/// run down the same cells again and again.
+/// Where a column of a point that has come to `to` stands. It is there, or where it left. A barrier may raise the
+/// ground of columns that the point is not above. Or a hole may have a wall. Then it is before them on its own side.
+/// Where the window ends near a barrier and columns have no cell there, it is one of the window. They leave that again
+/// in their next step: on the barrier they would gain its height. Not so before a hole. Points do not feel its wall,
+/// and would run down the same cells again and again.
 Vec2 StagedRun::place_of_column(const DepartedPoint& point, const Vec2& to) {
     const Vec2 left = point.position.head<2>();
     Vec2 x = columns_->may_stand(to.x(), to.y()) ? to : left;
@@ -59,8 +59,8 @@ bool StagedRun::on_raised(const Vec2& x) const {
                      static_cast<Index>(std::floor((x.y() - g.y0) / g.cell + 0.5)));
 }
 
-/// The nearest cell to x of those that no barrier raises or hides: as far behind its edge as x lies before it, so that not all
-/// columns stand on that edge.
+/// The nearest cell to x of those that no barrier raises or hides. The place is as far behind its edge as x lies before
+/// it. So not all columns stand on that edge.
 std::optional<Vec2> StagedRun::nearest_before(const DepartedPoint& point, const Vec2& x,
                                               const std::function<bool(Index, Index)>& allowed) const {
     constexpr Index kFar = 3;          // cells
@@ -88,7 +88,7 @@ std::optional<Vec2> StagedRun::nearest_before(const DepartedPoint& point, const 
     return best;
 }
 
-/// Their ground is filtered: nodes beside those that a barrier raises are raised too.
+/// Their ground is filtered: nodes adjacent to those that a barrier raises are raised too.
 void StagedRun::mark_raised() {
     const GridGeometry& g = scene_.bed.geometry;
     raised_.assign(static_cast<std::size_t>(g.size()), 0);

@@ -88,7 +88,7 @@ void StagedRun::sample_columns() {
     if (watch_) watch_->add(before, columns_watch_->loads());
 }
 
-/// Columns that are left go a step ahead of the points, so that what flows into the window is there when the points arrive
+/// Columns that are left go a step ahead of the points. So what flows into the window is there when the points arrive
 /// at that time.
 void StagedRun::step_points(double until) {
     if (columns_->status().time <= points_->status().time) step_columns(until);
@@ -141,7 +141,7 @@ void StagedRun::begin_watch() {
     watch_->add(none, columns_watch_->loads());
 }
 
-/// The ground comes first; it brakes by the bed law, where that hangs on speed.
+/// The ground comes first; it brakes by the bed law, where that depends on speed.
 SolidScene StagedRun::space_of_stage() const {
     SolidScene space = solid_scene(scene_, start_);
     if (scene_.solid->whole_bed_law && !start_.stuck)
@@ -149,9 +149,9 @@ SolidScene StagedRun::space_of_stage() const {
     return space;
 }
 
-/// Refuses what does not fit into memory before it is asked for.
+/// Refuses what does not fit into memory before it is allocated.
 void StagedRun::require_room(const FlowColumns& columns) const {
-    // Of a point: its numbers, room to sort, and both forms while it is converted, at the end back as well.
+    // Of a point: its numbers, room to sort, and both forms while it is converted. At the end it is converted back as well.
     const double per_point = scene_.solid->until ? 600.0 : 450.0, per_column = 160.0;
     const PartsForecast parts = forecast_parts(columns, scene_.solid->spacing, scene_.bed.geometry.cell);
     const double bytes = parts.columns * per_column + parts.points * per_point, free = free_memory();
@@ -223,8 +223,8 @@ void StagedRun::convert_to_3d() {
     });
 }
 
-/// The map follows when material has moved by a quarter of a cell, and at output times; with barriers when it
-/// has moved by half a cell of the points, so that what goes over them is seen there.
+/// The map follows when material has moved by a quarter of a cell, and at output times. With barriers it follows when
+/// material has moved by half a cell of the points. So what goes over them is seen there.
 void StagedRun::sample(double until) {
     constexpr double kShare = 0.25;
     double far = kShare * scene_.bed.geometry.cell;
@@ -239,8 +239,8 @@ void StagedRun::sample(double until) {
     moved_ = 0.0;
 }
 
-/// Sums of both models. All energy that the points lost counts as dissipated; what columns do not have, that of
-/// their compression, is in the residual.
+/// Sums of both models. All energy that the points lost counts as dissipated. What columns do not have, that of their
+/// compression, is in the residual.
 void StagedRun::accumulate(const Status& columns) {
     const SolidStatus& s = points_->status();
     const Index step = status_.step;
@@ -322,7 +322,7 @@ Sample StagedRun::at(const Vec2& point) const {
     return sample;
 }
 
-/// What of the case's bed law there is in space.
+/// What the 3D model has of the case's bed law.
 void StagedRun::remark_law(std::vector<std::string>& remarks) const {
     const SolidStage& stage = *scene_.solid;
     if (stage.of_bed)
@@ -345,7 +345,7 @@ void StagedRun::remark_law(std::vector<std::string>& remarks) const {
             stage.bed_friction));
 }
 
-/// Whether the cells in 3D show what decides: the depth of the flow, and the layer that shears at a bed that holds it.
+/// Whether the cells in 3D resolve the flow's depth, and the layer that shears at a bed that holds it.
 void StagedRun::remark_cells(std::vector<std::string>& remarks) const {
     constexpr double kEnough = 4.0;
     const SolidStage& stage = *scene_.solid;

@@ -1,7 +1,7 @@
 #pragma once
-// A run in stages: columns, from a time on 3D points in a window of the map (Fois, de Falco, Formaggia 2025, with
-// the tail that still flows into the window converted column by column, and what flows out made columns), and where the
-// case asks for it columns alone again.
+// A run in stages (Fois, de Falco, Formaggia 2025): columns, from a time on 3D points in a map window. The
+// tail that still flows into the window is converted column by column, and what flows out becomes columns. Where the
+// case says so, all are columns again later.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -35,7 +35,7 @@ public:
     }
     MovingMass motion(const MotionQuery& query) const override;
     bool may_rest() const override;
-    /// In space: columns first, then points; "model" is 0 and 1. A point's depth, elevation and surface are
+    /// With 3D points: columns first, then points; "model" is 0 and 1. A point's depth, elevation and surface are
     /// those of the map at its place. Between outputs columns and map may be ahead or behind by a step of the
     /// columns.
     Frame frame() override;
@@ -63,8 +63,8 @@ private:
         std::array<double, 2> momentum{};
     };
 
-    /// What points gave back: what columns took of it, the energy that they have no place for, and what stands on ground
-    /// that a barrier or a hole's wall raises, for want of a cell before it.
+    /// What points gave back: what columns took of it, and the energy that they have no place for. Also what stands on
+    /// ground that a barrier or a hole's wall raises, for want of a cell before it.
     struct Returned {
         double mass = 0.0, lost = 0.0, raised = 0.0;
     };
@@ -116,7 +116,7 @@ private:
     SolidStart start_;
     FlowMap map_;
     std::optional<BarrierWatch> watch_;         ///< when there are barriers, from the stage on
-    std::optional<ColumnWatch> columns_watch_;  ///< when there are, of columns before, beside and after it
+    std::optional<ColumnWatch> columns_watch_;  ///< when there are, of columns before, around and after it
     std::vector<Departed> pending_;             ///< columns that left into the window, ahead of the points' time
     std::vector<std::uint8_t>
         at_edge_;  ///< nodes in the window, and around its open sides as far as points feel columns
@@ -128,7 +128,7 @@ private:
     bool ended_ = false;  ///< the 3D stage is over: its points, none, only have its sums
     Status status_;
     StepClock timed_;
-    double moved_ = 0.0;  ///< farthest way of a point since the last look at the map [m]
+    double moved_ = 0.0;  ///< farthest way of a point since the last sample of the map [m]
     PointsApart apart_;
     Spray spray_;
     double largest_mach_ = 0.0;  ///< fastest point over the speed of sound [1]

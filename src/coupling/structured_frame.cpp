@@ -226,7 +226,7 @@ void StructuredRun::water_fields(Frame& frame) {
     });
 }
 
-/// The water's own, where columns are beside it.
+/// The water's own, where columns are with it.
 void StructuredRun::own_water_fields(Frame& frame) {
     const WaterBody& water = both_->water().body();
     const Index size = bed_.geometry.size();

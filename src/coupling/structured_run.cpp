@@ -10,7 +10,7 @@
 namespace frana {
 namespace {
 
-/// Of the water at the start, by its volume; where there is none, of the first inflow; else of the terrain.
+/// Of the water at the start, by its volume. Where there is none, of the first inflow; else of the terrain.
 Vec2 centre_of(const WaterScene& water) {
     const GridGeometry& g = water.grid;
     Vec2 centre(0, 0);
@@ -119,7 +119,7 @@ void StructuredRun::accumulate() {
 }
 
 /// The water's part. Rain and what sources bring have come in, and what the ground takes has left. Of its energy friction,
-/// viscosity and drag are recorded; what shocks and the scheme take is what is left, the residual.
+/// viscosity and drag are recorded. What shocks and the scheme take is what is left, the residual.
 void StructuredRun::accumulate_water() {
     const WaterStatus& w = both_->water().status();
     const WaterLedger& l = w.ledger;

@@ -1,6 +1,6 @@
 #pragma once
-// A run of solids that hold together (van den Bout et al. 2021), of free water beside them, or of the water alone: one model
-// from the start to the end.
+// A run of solids that hold together (van den Bout et al. 2021), with or without free water, or of water alone. It has
+// one model from the start to the end.
 #include <array>
 #include <optional>
 
@@ -13,8 +13,8 @@
 
 namespace frana {
 
-/// The scene of the columns: the bed's slope by central differences of its nodes, as far as there is ground;
-/// walls and barriers as obstacles.
+/// The scene of the columns. The bed's slope is by central differences of its nodes, as far as there is ground. Walls
+/// and barriers are obstacles.
 StructuredScene structured_scene(const Scene& scene);
 /// The same with its water, or the water alone. Holds on to `scene` until a flow is made of it.
 TwoPhaseScene two_phase_scene(const Scene& scene);
@@ -31,9 +31,9 @@ public:
     const Status& status() const override { return status_; }
     double longest_step() const override { return both_ ? both_->longest_step() : alone_->longest_step(); }
     MovingMass motion(const MotionQuery& query) const override;
-    /// "stress" is what the structure passes on, its undamaged share, "effective_stress" that and the earth pressure
-    /// of grains; "damage" 0 where whole, 1 where grains; "cohesion" what is left of it; with water "depth" of nodes
-    /// is that of both, "water_depth" its part. Water alone has none of these, and no particles.
+    /// "stress" is what the structure passes on, its undamaged share; "effective_stress" that and the earth pressure of
+    /// grains. "damage" is 0 where intact, 1 where grains; "cohesion" is what is left of it. With water, "depth" of
+    /// nodes is that of both, "water_depth" its part. Water alone has none of these, and no particles.
     Frame frame() override;
     std::shared_ptr<const void> give_frame_away() override { return store_.give_away(); }
     Sample at(const Vec2& point) const override;

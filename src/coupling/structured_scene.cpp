@@ -55,8 +55,8 @@ private:
         return std::binary_search(holes_.begin(), holes_.end(), j * bed_.geometry.nx + i);
     }
 
-    /// Where there is no ground: the mean elevation of the nearest ring of nodes that has any, as far as columns reach [m].
-    /// Nodes there carry a share of the columns beside the hole, and that share has its height.
+    /// Mean elevation of the nearest ring of nodes with ground, where there is none, as far as columns reach [m].
+    /// Nodes there carry a share of the columns at the hole, and that share has its height.
     double ground_near_hole(Index i, Index j) const {
         constexpr Index kReach = 4;
         for (Index reach = 1; reach <= kReach; ++reach) {
@@ -69,7 +69,7 @@ private:
         return 0.0;
     }
 
-    /// Central differences; one-sided at the edge and beside what has no ground.
+    /// Central differences; one-sided at the edge and next to what has no ground.
     Vec2 slope_at(Index i, Index j) const {
         const auto along = [&](Index di, Index dj) {
             const auto known = [&](Index a, Index b) {
@@ -114,7 +114,7 @@ Obstacle box_of(const Barrier& barrier) {
 
 namespace {
 
-/// What make_bed_geometry needs, kept: grains may come long after the scene is gone.
+/// What make_bed_geometry needs, stored: grains may come long after the scene is gone.
 std::function<BedGeometry(const TileGrid&)> bed_under(const Scene& scene) {
     Scene of;
     of.bed = scene.bed, of.scheme = scene.scheme, of.sides = scene.sides, of.curvature = scene.curvature;
@@ -177,7 +177,7 @@ StructuredScene structured_scene(const Scene& scene) {
 
 namespace {
 
-/// Depth and discharge of the water of the releases: in the pores of columns, spread as they are, or all of it.
+/// Depth and discharge of the water of the releases. It is in the pores of columns, spread as they are, or all of it.
 class ReleasedWater {
 public:
     ReleasedWater(const Scene& scene) : g_(scene.bed.geometry), depth_(size()), qx_(size()), qy_(size()) {
@@ -251,7 +251,7 @@ std::vector<double> depths_of(const StructuredScene& columns) {
     const StructuredFlow flow(columns);
     const StructuredBody& body = flow.body();
     const GridGeometry& g = columns.grid;
-    // As beside water: of the mass on the node (two_phase_flow.cpp, confine), not of the grains' sub-points.
+    // As with water: of the mass on the node (two_phase_flow.cpp, confine), not of the grains' sub-points.
     const double per_mass = 1.0 / (body.density * g.cell * g.cell);
     std::vector<double> depths(static_cast<std::size_t>(g.size()), 0.0);
     for (Index j = 0; j < g.ny; ++j)

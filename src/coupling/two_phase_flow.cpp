@@ -67,7 +67,7 @@ void TwoPhaseFlow::mix() {
     });
 }
 
-/// Columns that outrun the water's waves, or that there is no water beside yet, bound its step as well; 0: they do not.
+/// Columns that outrun the water's waves, or that there is no water with yet, bound its step as well. 0: they do not.
 double TwoPhaseFlow::step_of_columns() const {
     constexpr double kPart = 0.45;
     const double reach = kPart * columns_.body().grid.cell(), wave = columns_.wave();
@@ -140,7 +140,7 @@ void TwoPhaseFlow::serialize(Archive& archive) {
     }
     archive.numbers("weights", {&volume_given_, &potential_, &kinetic_});
     if (!archive.loading()) return;
-    columns_.sample();  // beside the water that has been loaded
+    columns_.sample();  // with the water that has been loaded
     confine();
 }
 

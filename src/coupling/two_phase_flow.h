@@ -1,5 +1,5 @@
 #pragma once
-// Structured columns and free water on one grid: what a mass of rock and water does as it breaks and drains. Or the water
+// Structured columns and free water on one grid: a mass of rock and water as it breaks and drains. Or the water
 // alone.
 #include "structured/structured_flow.h"
 #include "water/water_flow.h"
@@ -13,8 +13,8 @@ struct TwoPhaseScene {
     bool alone = false;  ///< there are no columns, nor will be
 };
 
-/// Steps of the water, each followed by as many of the columns as elastic waves ask for. In those the water stands still
-/// but for what it exchanges with the columns at their nodes: momentum, exactly, and what they release.
+/// Steps of the water, each followed by as many of the columns as elastic waves need. In those the water stands still
+/// but for what it exchanges with the columns at their nodes. That is momentum, exactly, and what they release.
 class TwoPhaseFlow {
 public:
     explicit TwoPhaseFlow(const TwoPhaseScene& scene);
@@ -37,11 +37,11 @@ public:
     double volume_given() const { return volume_given_; }
     /// In columns, now [m^3].
     double confined() const;
-    /// Of the water over its density: energies of height and of motion along the ground [m^5/s^2], and sum of volume times
-    /// speed [m^4/s].
+    /// Of the water over its density: energies of height and of motion along the ground [m^5/s^2]. Also the sum of
+    /// volume times speed [m^4/s].
     double water_potential() const { return potential_; }
     double water_kinetic() const { return kinetic_; }
-    /// Saves the state between two steps, or takes it up again with all its bits, in a flow of the same scene.
+    /// Saves the state between two steps, or restores it with all its bits, in a flow of the same scene.
     void serialize(Archive& archive);
 
 private:

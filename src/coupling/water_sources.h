@@ -8,7 +8,7 @@
 namespace frana {
 
 /// One of each inflow. A line shares its discharge over the cells that it crosses, by its length in each, and flows across
-/// itself; an area over the cells that its patches lie in, at rest.
+/// itself. An area shares it over the cells that its patches lie in, at rest.
 std::vector<WaterSource> water_sources(const Scene& scene);
 
 }  // namespace frana

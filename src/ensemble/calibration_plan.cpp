@@ -12,7 +12,7 @@
 namespace frana {
 namespace {
 
-constexpr Index kMostPoints = 5000;  ///< each point's weight asks all others, in each round
+constexpr Index kMostPoints = 5000;  ///< each point's weight needs all others, in each round
 
 class CalibrationReader {
 public:

@@ -1,5 +1,5 @@
 #pragma once
-// What is to be learnt from surveyed events: which keys vary, and how near to a survey a run should come.
+// What is to be learnt from surveyed events: which keys vary, how near to a survey runs should come.
 #include "ensemble/evidence.h"
 #include "ensemble/plan.h"
 
@@ -32,7 +32,7 @@ struct CalibrationPlan {
     SurveyErrors errors;                                    ///< likewise
     std::vector<Vary> vary;
     std::vector<SurveyedEvent> events;
-    std::optional<EnsemblePlan> predict;  ///< another event, whose maps are wanted: its case and which maps
+    std::optional<EnsemblePlan> predict;  ///< another event to map: its case and which maps
 };
 
 /// Reads and checks `file`. Throws one UserError with every problem found.

@@ -15,7 +15,7 @@ namespace frana {
 /// "a, b or c".
 std::string listed(const std::vector<std::string>& words);
 
-/// Reads one table; every key that is not asked for is a problem.
+/// Reads one table. Every key that is not read is a problem.
 class CheckedTable {
 public:
     CheckedTable(const toml::table& table, std::string name, const std::filesystem::path& file, Problems& problems)
@@ -29,7 +29,7 @@ public:
     double number(const std::string& key, double otherwise);
     Index whole(const std::string& key, Index otherwise, Index least, Index most);
     std::vector<double> numbers(const std::string& key);
-    /// As a case file has them: texts keep their quotes.
+    /// As a case file has them: texts have their quotes.
     std::vector<std::string> values(const std::string& key);
     const toml::node* node(const std::string& key);
     void refuse_others(const std::string& when) const;

@@ -1,5 +1,5 @@
 #pragma once
-// Where in the unit cube the samples of an ensemble lie. Sample i hangs on the seed and on i alone; with "lhs" also on
+// Where in the unit cube the samples of an ensemble lie. Sample i depends on the seed and on i alone; with "lhs" also on
 // how many there are. So any part of an ensemble can be run anywhere.
 #include <cstdint>
 #include <vector>
@@ -23,7 +23,8 @@ Design make_design(Method method, Index count, Index keys, std::uint64_t seed);
 /// All combinations of `levels` slices of each key, at their middles; the last key changes fastest.
 Design make_grid(const std::vector<Index>& levels);
 
-/// 64 random bits of a place: the same on any machine, of any sample without those before (SplitMix64, Steele et al. 2014).
+/// 64 random bits of a place (SplitMix64, Steele et al. 2014). They are the same on any machine, and need no earlier
+/// samples.
 std::uint64_t bits_at(std::uint64_t seed, std::uint64_t sample, std::uint64_t key);
 /// From them a number within (0, 1).
 double unit_at(std::uint64_t seed, std::uint64_t sample, std::uint64_t key);

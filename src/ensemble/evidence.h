@@ -30,7 +30,7 @@ struct SurveyErrors {
     double of(Evidence evidence) const;
 };
 
-/// How far a run is from what was surveyed of a kind: by so much, in so many places that err independently.
+/// How far a run is from what was surveyed of a kind. It is off by so much, in so many places that err independently.
 struct Misfit {
     double rms = 0.0;         ///< root of the mean square [unit of the kind]
     double number = 0.0;      ///< of independent errors [1]

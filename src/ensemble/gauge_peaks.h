@@ -1,5 +1,5 @@
 #pragma once
-// What a run of an ensemble keeps of the gauges of its case.
+// What an ensemble stores of a run at the gauges of its case.
 #include <optional>
 #include <vector>
 
@@ -15,7 +15,7 @@ struct GaugePeak {
     std::optional<double> arrival;  ///< the first time of it [s]
 };
 
-/// Looks at the gauges after every step.
+/// Samples the gauges after every step.
 class GaugePeaks : public Observer {
 public:
     GaugePeaks(const std::vector<Gauge>& gauges, double footprint_depth)

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kRoundOff = 1e-9;  ///< of sums of weights, and of their quotients
 
-/// What a level asks of the fields of a run, in the order that these have there.
+/// A level's demands on the fields of a run, in the order that these have there.
 struct Demand {
     std::size_t field;
     float at_least;

@@ -49,22 +49,22 @@ struct ReachedLevels {
 ReachedLevels reached_levels(const HazardTable& table, const std::vector<std::string>& fields,
                              const SparseRasters& peaks);
 
-/// What the classes need to know of a run.
+/// What the classes need of a run.
 struct HazardRun {
     const ReachedLevels* reached = nullptr;  ///< none: it has no answer
     double weight = 1.0;
-    double return_period = 0.0;  ///< of its scenario [years]; not looked at with `event_years`
+    double return_period = 0.0;  ///< of its scenario [years]; not used with `event_years`
 };
 
 /// What runs without an answer are taken for: left out, or one of two ends. Those that came everywhere did so where any
-/// other run came, as strong as the table knows. The ends bound the class if a table's never falls with strength and never
-/// rises with years.
+/// other run came, as strong as the highest level of the table. The ends bound the class if a table's never falls with
+/// strength and never rises with years.
 enum class Unanswered { left_out, came_nowhere, came_everywhere };
 
 /// The number of the class on each pixel, 0 for none. The runs' levels are those of the table.
-/// Scenarios: each has the strength that at least `share` of its runs reach; the class is the greatest of all scenarios'.
-/// Otherwise each strength comes back after event_years over the share of the runs that reach it; the class is the greatest of
-/// all strengths'.
+/// Scenarios: each has the strength that at least `share` of its runs reach. The class is the greatest of all
+/// scenarios'. Otherwise each strength comes back after event_years over the share of the runs that reach it. The class
+/// is the greatest of all strengths'.
 std::vector<std::uint8_t> hazard_classes(const HazardTable& table, const std::vector<HazardRun>& runs, Index pixels,
                                          Unanswered unanswered = Unanswered::left_out);
 

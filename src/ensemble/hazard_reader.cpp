@@ -11,7 +11,7 @@ namespace frana {
 namespace {
 
 constexpr const char* kTable = "ensemble.hazard";
-constexpr std::size_t kMostClasses = 254;  ///< that a byte can hold beside "none" and nodata
+constexpr std::size_t kMostClasses = 254;  ///< that a byte can hold besides "none" and nodata
 
 class HazardReader {
 public:
@@ -144,7 +144,7 @@ private:
                                     "beside the values of a discrete key");
     }
 
-    /// A preset knows nothing of what is kept.
+    /// A preset does not depend on what is stored.
     void require_fields(const CheckedTable& table) {
         for (const HazardLevel& level : table_.levels)
             for (const auto& least : level.at_least)

@@ -5,7 +5,7 @@
 
 namespace frana {
 
-/// `fields`: that are kept of the runs; `scenarios`: the samples have return periods. What is wrong goes to `problems`.
+/// `fields`: those stored of the runs; `scenarios`: the samples have return periods. What is wrong goes to `problems`.
 HazardTable read_hazard(const toml::table& table, const std::filesystem::path& file,
                         const std::vector<std::string>& fields, bool scenarios, Problems& problems);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Where the peaks of an ensemble's runs are. Of ten thousand runs they fill a few hundred MB, so who needs them takes one run
+// Where the peaks of an ensemble's runs are. Of ten thousand runs they fill a few hundred MB, so callers take one run
 // after the other.
 #include <cstddef>
 #include <functional>

@@ -1,5 +1,5 @@
 #pragma once
-// What an ensemble is to do, from its file: which keys of a case vary and how, and what is asked of the runs.
+// What an ensemble is to do, from its file: which keys of a case vary and how, which results count.
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -37,7 +37,7 @@ struct EnsemblePlan {
     std::string method_name = "lhs";
     Index samples = 0;  ///< of the file, then the number of runs that they become
     std::uint64_t seed = 1;
-    std::vector<std::string> fields;                    ///< kept of each run; the first is peak_depth
+    std::vector<std::string> fields;                    ///< stored of each run; the first is peak_depth
     std::map<std::string, std::vector<double>> exceed;  ///< by field: thresholds, in the field's unit
     std::vector<double> quantiles;
     std::optional<HazardTable> hazard;
@@ -48,7 +48,7 @@ struct EnsemblePlan {
     std::vector<std::string> sets_of(Index sample) const;  ///< "key=value" as for `frana run --set`
 };
 
-/// Node fields that an ensemble can keep, with unit and meaning.
+/// Node fields that an ensemble can store, with unit and meaning.
 struct PeakField {
     const char *name, *unit, *meaning;
     bool is_time = false;  ///< of arrival: there is none where a run never came
@@ -61,7 +61,7 @@ const PeakField& peak_field(const std::string& name);
 /// Reads and checks `file`. Throws one UserError with every problem found.
 EnsemblePlan read_ensemble(const std::filesystem::path& file);
 
-/// Adds what "FIELD=VALUE" on the command line asks for. Throws UserError.
+/// Adds the threshold "FIELD=VALUE" of the command line. Throws UserError.
 void add_exceedance(EnsemblePlan& plan, const std::string& argument);
 
 }  // namespace frana

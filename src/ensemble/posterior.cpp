@@ -36,7 +36,8 @@ Eigen::MatrixXd covariance(const std::vector<Eigen::VectorXd>& points, const std
     return sum;
 }
 
-/// Weights of likelihoods, flattened by the power `flat`, under the density that the points came from; sum 1, or all 0.
+/// Weights of likelihoods, flattened by the power `flat`, under the density that the points came from. Their sum is 1,
+/// or all are 0.
 std::vector<double> weighted(const std::vector<double>& log_likelihood, const std::vector<double>& mixture,
                              double flat) {
     std::vector<double> w(log_likelihood.size(), 0.0);
@@ -50,8 +51,8 @@ std::vector<double> weighted(const std::vector<double>& log_likelihood, const st
     return w;
 }
 
-/// The largest power up to 1 that leaves a tenth of the points, and eight at least, with a say; where fewer have a likelihood
-/// at all, one that leaves most of those.
+/// The largest power up to 1 that leaves a tenth of the points, and eight at least, with a say. Where fewer have a
+/// likelihood at all, one that leaves most of those.
 double flattening(const std::vector<double>& log_likelihood, const std::vector<double>& mixture) {
     constexpr double most_of = 0.9;
     const double possible = effective_number(weighted(log_likelihood, mixture, 0.0));
@@ -68,7 +69,7 @@ double flattening(const std::vector<double>& log_likelihood, const std::vector<d
 }  // namespace
 
 /// Kernels of the width that suits a normal distribution (Silverman 1986). The fewer points tell of the covariance, the less
-/// the keys go together in it (shrunk to its diagonal, Schaefer and Strimmer 2005).
+/// the keys go together in it. It is shrunk to its diagonal (Schaefer and Strimmer 2005).
 Posterior::Round Posterior::proposal() const {
     Round round;
     round.begin = points_.size();

@@ -1,5 +1,6 @@
 #pragma once
-// What a survey tells of the keys that vary: samples weighted by their likelihood, and where the next ones should lie.
+// What a survey tells of the keys that vary. Samples are weighted by their likelihood, which also says where the next
+// ones should lie.
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
@@ -9,13 +10,14 @@
 
 namespace frana {
 
-/// Adaptive importance sampling (Cappe et al. 2004) in the unit cube, where the prior is uniform: a point's coordinate is the
-/// share of the key's distribution below its value. The first round is the prior's; each further one is drawn around the
-/// weighted points before it, and a part of it from the prior again. The kernels have the points' covariance, since a survey
-/// often tells one key only by another: much friction in one law may stand for little in the next. They lie where the prior is
-/// normal (each share through the inverse of its distribution), which has no edges. As long as few points have all of the
-/// weight, the likelihood is flattened for that (tempered), so that no round shrinks onto one of them. All rounds together
-/// count, each point by the mean density of all rounds (deterministic mixture, Veach and Guibas 1995).
+/// Adaptive importance sampling (Cappe et al. 2004) in the unit cube, where the prior is uniform. A point's coordinate
+/// is the share of the key's distribution below its value. The first round is the prior's. Each further one is drawn
+/// around the weighted points before it, and a part of it from the prior again. The kernels have the points'
+/// covariance, since a survey often tells one key only by another. Much friction in one law may stand for little in the
+/// next. They lie where the prior is normal (each share through the inverse of its distribution), which has no edges.
+/// As long as few points have all of the weight, the likelihood is flattened (tempered). So no round shrinks onto one
+/// of them. All rounds together count, each point by the mean density of all rounds (deterministic mixture, Veach and
+/// Guibas 1995).
 class Posterior {
 public:
     Posterior(Index keys, std::uint64_t seed) : keys_(keys), seed_(seed) {}

@@ -47,7 +47,7 @@ private:
     const std::vector<std::string>& fields_;
 };
 
-/// Nothing is written of a run of an ensemble, and nothing is asked of it on the way.
+/// Nothing is written of a run of an ensemble, and nothing is needed of it on the way.
 std::vector<std::string> quiet(std::vector<std::string> sets) {
     sets.emplace_back("output.formats=[]");
     return sets;

@@ -1,5 +1,6 @@
 #pragma once
-// One run of an ensemble: from the case and its overrides to a row of numbers and the places that the flow reached.
+// One run of an ensemble. Its input is the case and its overrides. Its result is a row of numbers and the places that
+// the flow reached.
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,13 +31,14 @@ struct EnsembleBase {
     Polyline path;                      ///< that all runouts are measured along; empty: none is known
 };
 
-/// Nothing is kept below the footprint depth [m], so no threshold may lie there. Throws UserError, which names `table`.
+/// Nothing is stored below the footprint depth [m], so no threshold may lie there. Throws UserError, which names
+/// `table`.
 void require_kept_thresholds(const EnsemblePlan& plan, double footprint_depth, const std::string& table);
 
 /// Builds the case of the plan once. Throws UserError when it cannot run.
 EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, const MeshReader& meshes);
 
-/// What is kept of a run.
+/// What is stored of a run.
 struct SampleResult {
     Index sample = 0;
     std::string reason;   ///< as of a run (RunSummary), or "refused": its case cannot run
@@ -62,7 +64,8 @@ struct SampleResult {
     bool ended() const { return reason == "end" || reason == "rest" || reason == "left"; }
 };
 
-/// Runs a sample on this thread; who `also` looks on may be given. Nothing when the interrupt asked for an end meanwhile.
+/// Runs a sample on this thread; further observers `also` may be given. Nothing when the interrupt was requested
+/// meanwhile.
 std::optional<SampleResult> run_sample(const EnsemblePlan& plan, const EnsembleBase& base, Index sample,
                                        const GisReader& reader, const MeshReader& meshes, const Interrupt& interrupt,
                                        std::unique_ptr<Observer> also = nullptr);

@@ -8,8 +8,8 @@ namespace frana {
 /// What stands between the commas of a line, without blanks around it; quotes have no meaning.
 std::vector<std::string> comma_fields(const std::string& line);
 
-/// Reads a table with commas into the plan's keys and points: its first line names keys of a case and perhaps "weight". Weights
-/// are scaled so that their sum is the number of samples.
+/// Reads a table with commas into the plan's keys and points. Its first line names keys of a case and perhaps "weight".
+/// Weights are scaled so that their sum is the number of samples.
 void read_sample_table(const std::filesystem::path& file, EnsemblePlan& plan, Problems& problems);
 
 }  // namespace frana

@@ -138,7 +138,7 @@ SensitivityMaps sensitivity_maps(Method method, const Design& design, const std:
     SensitivityMaps maps;
     maps.first.assign(keys, Raster::filled(pixels.grid(), Raster::nodata));
     maps.total = maps.first;
-    constexpr double noise = 1e-6;  // the runs' fields are kept with seven digits
+    constexpr double noise = 1e-6;  // the runs' fields are stored with seven digits
     std::vector<double> outcomes(design.points.size(), 0.0);
     pixels.for_each_by_run([&](Index pixel, const std::vector<double>& values) {
         for (std::size_t run = 0; run < values.size(); ++run)

@@ -1,5 +1,6 @@
 #pragma once
-// Maps of an ensemble: in how many of its runs a pixel saw more than a threshold, and what a share of them stayed below.
+// Maps of an ensemble: in how many of its runs a pixel saw more than a threshold. Also what a share of them stayed
+// below.
 #include <algorithm>
 #include <cstdint>
 #include <functional>
@@ -12,7 +13,7 @@
 namespace frana {
 
 /// One field of all runs that have an answer, by pixel. Numbers are added in the order of the samples, so the same runs give
-/// the same bits, whoever ran them.
+/// the same bits, on any process.
 class PixelValues {
 public:
     explicit PixelValues(const GridGeometry& grid) : grid_(grid) {}
@@ -27,10 +28,10 @@ public:
 
     /// Share of the weights with more than `threshold` [1].
     Raster exceeds(double threshold) const;
-    /// For each share the least value that at least so much of the weights does not exceed; 0 where a run did not come.
+    /// For each share the least value that at least so much of the weights does not exceed. 0 where a run did not come.
     std::vector<Raster> quantiles(const std::vector<double>& shares) const;
     Raster quantile(double share) const { return quantiles({share}).front(); }
-    /// The same, handed to body(n, raster) in the order of the shares; only a few are held together.
+    /// The same by calls of body(n, raster) in the order of the shares; only a few are held together.
     void for_each_quantile(const std::vector<double>& shares,
                            const std::function<void(std::size_t n, Raster raster)>& body) const;
     /// The least time by which at least a share `q` of the weights has come. A run that never came, or has a time below zero,
@@ -40,7 +41,8 @@ public:
     /// Weight of the runs that came there, over all [1].
     Raster reached() const;
 
-    /// Calls body(pixel, values) for each pixel that a run came to: the value of each run, 0 where it did not come.
+    /// Calls body(pixel, values) for each pixel that a run came to. `values` has that of each run, 0 where it did not
+    /// come.
     template <class Body>
     void for_each_by_run(Body&& body) const {
         std::vector<double> values(weights_.size(), 0.0);
@@ -53,8 +55,8 @@ public:
         }
     }
 
-    /// Calls body(pixel, shares) for each pixel that a run came to: the share of the weights with more than each of
-    /// `thresholds`, which ascend.
+    /// Calls body(pixel, shares) for each pixel that a run came to. `shares` are those of the weights with more than
+    /// each of `thresholds`, which ascend.
     template <class Body>
     void for_each_curve(const std::vector<double>& thresholds, Body&& body) const {
         const std::vector<float> limits(thresholds.begin(), thresholds.end());
@@ -97,8 +99,8 @@ double effective_number(const std::vector<double>& weights);
 /// What is not known of a probability `p` of so many independent runs: sqrt(p (1 - p) / n).
 double standard_error(double p, double number);
 
-/// Between which a probability lies that was found as `p` in so many independent runs: 95 of 100 such intervals hold it
-/// (Wilson, J. Am. Stat. Assoc. 22 (1927) 209-212). [0, 1] without a run.
+/// Bounds of a probability that was found as `p` in so many independent runs. 95 of 100 such intervals hold it (Wilson,
+/// J. Am. Stat. Assoc. 22 (1927) 209-212). [0, 1] without a run.
 std::pair<double, double> wilson_bounds(double p, double number);
 
 }  // namespace frana

@@ -13,7 +13,7 @@ namespace frana {
 /// Throws UserError when it cannot be read.
 std::string text_of_file(const std::filesystem::path& file);
 
-/// Hands the root table to `read`; what is no TOML is a problem.
+/// Passes the root table to `read`; what is no TOML is a problem.
 void read_toml(const std::string& text, const std::filesystem::path& file, Problems& problems,
                const std::function<void(const toml::table&)>& read);
 

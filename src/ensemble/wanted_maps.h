@@ -1,5 +1,5 @@
 #pragma once
-// Which maps are wanted of a case, from a table that says nothing of its runs: [predict].
+// Which maps to make of a case, from a table that says nothing of its runs: [predict].
 #include <toml++/toml.h>
 
 #include "ensemble/plan.h"

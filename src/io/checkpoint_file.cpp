@@ -96,7 +96,8 @@ protected:
     }
 
 private:
-    /// In one piece, within the file, whose head HDF5 counts in. HDF5 (1.10) follows other layouts of a damaged file to addresses that are not there.
+    /// In one piece, within the file, whose head HDF5 counts in. HDF5 (1.10) follows other layouts of a damaged file to
+    /// addresses that are not there.
     bool lies_whole(hid_t set, std::size_t bytes) const {
         const Handle made(access_, H5Dget_create_plist(set), H5Pclose);
         const haddr_t place = H5Dget_offset(set);

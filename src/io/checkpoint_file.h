@@ -1,7 +1,7 @@
 #pragma once
-// The state of a run in an HDF5 file. Before HDF5's own bytes stand 512 with the file's length and checksum as text, so
-// that a file that was cut short or damaged is known before HDF5 opens it. Arrays lie under the names that the archive
-// gives them, the labels (version, case, ...) in the group "labels".
+// The state of a run in an HDF5 file. 512 bytes before HDF5's own hold the file's length and checksum as text. So a
+// file that was cut short or damaged is found before HDF5 opens it. Arrays lie under the names that the archive gives
+// them, the labels (version, case, ...) in the group "labels".
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -11,7 +11,7 @@
 
 namespace frana {
 
-/// First line of a checkpoint. A state that keeps other numbers has another one.
+/// First line of a checkpoint. A state with other numbers has another one.
 constexpr const char* kCheckpointFormat = "frana checkpoint 6";
 
 /// What says where a state is from: texts by name.
@@ -27,7 +27,7 @@ class CheckpointFile {
 public:
     explicit CheckpointFile(const std::filesystem::path& file);
     const CheckpointLabels& labels() const { return labels_; }
-    /// Hands the arrays to `state`.
+    /// Passes the arrays to `state`.
     void load(const std::function<void(Archive&)>& state) const;
 
 private:

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double us_foot = 1200.0 / 3937.0;  // [m]
 constexpr double unit_tolerance = 1e-9;      // a US survey foot differs from a foot by 2e-6
-constexpr double scale_tolerance = 0.01;     // UTM: 0.0004 in the middle of its zone, 0.001 at its rim
+constexpr double scale_tolerance = 0.01;     // UTM: 0.0004 in the middle of its zone, 0.001 at its edge
 
 std::string authority(const OGRSpatialReference& crs) {
     const char* name = crs.GetAuthorityName(nullptr);
@@ -50,8 +50,7 @@ struct Unit {
     std::string name;
 };
 
-/// The unit of elevations when it is not the metre: declared by the vertical part of the CRS, else by the
-/// band.
+/// The unit of elevations when it is not the metre. The vertical part of the CRS declares it, else the band.
 Unit vertical_unit(const Place& place) {
     if (!place.elevation) return {};
     if (place.crs && place.crs->IsCompound()) {
@@ -140,7 +139,7 @@ std::optional<std::array<double, 2>> map_scale(const OGRSpatialReference& crs, c
         const double degrees_east = std::remainder(lon[to] - lon[from], 360.0), degrees_north = lat[to] - lat[from];
         return Vec2(across * degrees_east, along * degrees_north) * (constants::kDegree / (2.0 * reach));
     };
-    // The ellipse that a circle of the map is on the ground: its half axes are the singular values of this matrix.
+    // The ellipse that a circle of the map is on the ground. Its half axes are the singular values of this matrix.
     const Vec2 east = ground(1, 2), north = ground(3, 4);
     const double sum = 0.5 * (east.squaredNorm() + north.squaredNorm());
     const double area = east.x() * north.y() - east.y() * north.x();

@@ -27,8 +27,8 @@ std::string crs_name(const OGRSpatialReference& crs);
 /// stereographic.
 int utm_code(double longitude, double latitude);
 
-/// Lengths on the map over lengths on the ground, the least and the largest of all directions, at a place of a
-/// projected CRS. Nothing where the CRS cannot tell.
+/// Lengths on the map over lengths on the ground at a place of a projected CRS. The least and the largest of all
+/// directions. Nothing where the CRS cannot tell.
 std::optional<std::array<double, 2>> map_scale(const OGRSpatialReference& crs, const std::array<double, 2>& place);
 
 /// A raster as far as its CRS is concerned.
@@ -37,15 +37,15 @@ struct Place {
     const OGRSpatialReference* crs = nullptr;  ///< null: unknown
     std::array<double, 2> centre{};            ///< of what is used, in the CRS
     std::string band_unit;                     ///< unit of the elevations that the band declares, or empty
-    bool elevation = true;                     ///< false: a depth, a mask; its vertical unit is not looked at
+    bool elevation = true;                     ///< false: a depth, a mask; its vertical unit is not checked
 };
 
 /// Checks that map coordinates (and elevations) are metres. UserError with a gdalwarp or gdal_translate line
-/// that cures it: geographic CRS, other unit than metre, lengths on the map that are not those on the ground, vertical
-/// unit other than metre. Remarks go to `log`.
+/// that cures it. Causes are a geographic CRS, another unit than metre, and a vertical unit other than metre. So are
+/// lengths on the map that are not those on the ground. Remarks go to `log`.
 void require_metres(const Place& place, std::vector<std::string>& log);
 
-/// Arguments after the program's name of a gdalwarp that leaves no pixel looking like terrain that is none.
+/// Arguments after the program's name of a gdalwarp that leaves no pixel that only seems to be terrain.
 std::string warp_line(const std::filesystem::path& file, const std::string& target_crs, const std::string& suffix);
 
 }  // namespace frana::gdal

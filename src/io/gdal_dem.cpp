@@ -22,7 +22,7 @@ constexpr double round_off = 1e-6;  // of a pixel or cell
 constexpr double same_cell = 1e-9;  // relative; closer spacings are the same spacing
 constexpr double most_nodes = 5e8;  // 4 GB for the elevations alone
 
-/// The window asked for, or the whole raster; UserError when it is not inside.
+/// The requested window, or the whole raster; UserError when it is not inside.
 std::array<double, 4> checked_window(const RasterFile& raster, const DemRequest& request) {
     const std::array<double, 4> all = raster.extent();
     if (!request.window) return all;
@@ -47,7 +47,7 @@ void check_size(const RasterFile& raster, double nx, double ny) {
                     raster.file().string(), nx, ny, most_nodes));
 }
 
-/// The nodes of a grid that the request wants.
+/// The nodes of a grid for the request.
 NodeBox chosen(const DemRequest& request, const RasterFile& raster, const GridGeometry& grid) {
     if (!request.choose) return NodeBox::all(grid);
     return request.choose(Raster{grid, {}, gdal::horizontal_wkt(raster.crs()), raster.file().string()});

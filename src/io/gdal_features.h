@@ -36,8 +36,8 @@ struct ShapeLayer {
     std::vector<AttributedShape> shapes;
 };
 
-/// Outlines, holes kept, of the nodes' pixels that `inside` marks, largest first, each with its area_m2. Pixels that touch
-/// only at a corner belong to different ones.
+/// Outlines with holes of the nodes' pixels that `inside` marks, largest first, each with its area_m2. Pixels that
+/// touch only at a corner belong to different ones.
 std::vector<AttributedShape> pixel_outlines(const GridGeometry& grid, std::vector<std::uint8_t> inside);
 
 /// A GeoPackage, the same bytes for the same content; layers without shapes are left out. An attribute has the type that

@@ -128,8 +128,7 @@ Raster warped(const RasterFile& raster, Source& source, const GridGeometry& grid
     return out;
 }
 
-/// A file that ends before the grid does is a remark, not an error: a depth is often given where it is not
-/// zero.
+/// A file that ends before the grid does is a remark, not an error. A depth is often given where it is not zero.
 void note_gaps(const RasterFile& raster, const GridGeometry& grid, std::vector<std::string>& log) {
     const auto has = raster.extent(), wants = grid.pixel_extent();
     const double slack = 0.5 * grid.cell;

@@ -12,7 +12,7 @@
 namespace frana::gdal {
 namespace {
 
-/// CRS for a cure: none is asked for where none is known.
+/// CRS for a cure: none is given where none is known.
 std::string straight_line(const std::filesystem::path& file) { return warp_line(file, "", "_north_up"); }
 
 const char* color_word(int bands) { return bands == 3 || bands == 4 ? "; is this a picture rather than a field?" : ""; }

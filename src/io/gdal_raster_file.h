@@ -14,7 +14,7 @@ namespace frana::gdal {
 /// What the numbers of a raster may be; decides which values are taken for undeclared nodata.
 enum class Meaning { elevation, any };
 
-/// A north- or south-up raster with a geotransform. Reads band 1 in blocks: only the pixels asked for.
+/// A north- or south-up raster with a geotransform. Reads band 1 in blocks: only the pixels needed.
 class RasterFile {
 public:
     /// Opens and checks. UserError: missing, no raster, no georeference, rotated, complex numbers,
@@ -32,9 +32,9 @@ public:
     const std::filesystem::path& file() const { return file_; }
     std::string name() const { return file_.filename().string(); }
 
-    /// Pixels [i, i + nx) x [j, j + ny), j from the south, row 0 = south: scale and offset applied, NaN where
-    /// there is no data (nodata value, mask band, alpha, NaN). UserError: unreadable, or a value that must be
-    /// nodata but is not declared as such.
+    /// Pixels [i, i + nx) x [j, j + ny), j from the south, row 0 = south. Scale and offset are applied. NaN where there
+    /// is no data (nodata value, mask band, alpha, NaN). UserError: unreadable, or a value that must be nodata but is
+    /// not declared as such.
     std::vector<double> read(Index i, Index j, Index nx, Index ny) const;
 
     /// The grid of pixels [i, i + nx) x [j, j + ny), which must be square.

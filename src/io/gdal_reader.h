@@ -10,10 +10,10 @@ namespace frana {
 /// from several threads at once; each call opens and closes its file.
 class GdalReader : public GisReader {
 public:
-    /// Nodes on the raster's pixels when `cell` is the pixel (within 1e-9 of it; a window is widened to whole
-    /// pixels), otherwise on cells counted from the south-west corner of the window. Reads the window's
-    /// pixels only. UserError besides those of GisReader: window not inside the raster, no data in it,
-    /// rotated raster, values that must be nodata but are not declared so, more nodes than memory holds.
+    /// Nodes are on the raster's pixels when `cell` is the pixel, within 1e-9 of it. A window is then widened to whole
+    /// pixels. Otherwise they are on cells counted from the south-west corner of the window. Reads the window's pixels
+    /// only. UserErrors besides those of GisReader: window not inside the raster, no data in it, rotated raster. So too
+    /// values that must be nodata but are not declared so, and more nodes than memory holds.
     Raster read_dem(const std::filesystem::path& file, const DemRequest& request,
                     std::vector<std::string>& log) const override;
 
@@ -25,7 +25,7 @@ public:
     RasterPlace place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
                          const std::string& crs_wkt) const override;
 
-    /// Reads strips of rows, and keeps none.
+    /// Reads strips of rows, and stores none.
     std::optional<std::array<double, 4>> extent_above_zero(const std::filesystem::path& file,
                                                            const std::array<double, 4>& extent,
                                                            const std::string& crs_wkt) const override;
@@ -40,7 +40,7 @@ public:
 
     /// Z and M are dropped, curves become chords, multipolygons and collections are flattened, all layers are
     /// read. Outlines that cross themselves are repaired and named in the log. A GeoJSON without a crs member
-    /// counts as WGS 84 only where that makes sense: not when `crs_wkt` is empty or a coordinate is no
+    /// counts as WGS 84 only where that makes sense. It does not when `crs_wkt` is empty or a coordinate is no
     /// longitude or latitude. UserError when there is no polygon. Polygons may overlap one another.
     Polygons read_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
                            std::vector<std::string>& log) const override;
@@ -49,16 +49,15 @@ public:
     ValuedPolygons read_valued_polygons(const std::filesystem::path& file, const std::string& attribute,
                                         const std::string& crs_wkt, std::vector<std::string>& log) const override;
 
-    /// Polygons or, where the file is a raster, the outlines of its pixels above 0 (along the pixels' edges, then
-    /// reprojected). Stricter than read_polygons, since a survey in the wrong place would still give scores:
-    /// UserError also when the terrain has a CRS and the file has none (or claims degrees for coordinates that are
-    /// none), and when nothing of it lies within `extent`. What lies outside is kept. Overlapping polygons are
-    /// united.
+    /// Polygons or, where the file is a raster, the outlines of its pixels above 0. These run along the pixels' edges,
+    /// and are then reprojected. Stricter than read_polygons, since a survey in the wrong place would still give
+    /// scores. UserError also when the terrain has a CRS and the file none, or claims degrees for coordinates that are
+    /// none. So too when nothing of it lies within `extent`. What lies outside stays. Overlapping polygons are united.
     Polygons read_survey(const std::filesystem::path& file, const std::array<double, 4>& extent,
                          const std::string& crs_wkt, std::vector<std::string>& log) const override;
 
-    /// Thickness of a surveyed deposit, or a surveyed change of the bed, on the pixels of `grid`, widened by whole pixels to
-    /// all of the raster, so that no volume is lost. UserError as read_onto and read_survey.
+    /// Thickness of a surveyed deposit, or a surveyed change of the bed, on the pixels of `grid`. That is widened by
+    /// whole pixels to all of the raster, so that no volume is lost. UserError as read_onto and read_survey.
     Raster read_deposit(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
                         std::vector<std::string>& log) const override;
 

@@ -9,9 +9,8 @@
 namespace frana {
 namespace {
 
-// Shifts and overlaps below this share of a pixel are the round-off of map coordinates (1e7 m in doubles,
-// over pixels down to 1 cm), and move no elevation by more than a millionth of the difference between two
-// pixels.
+// Shifts and overlaps below this share of a pixel are the round-off of map coordinates. These are 1e7 m in doubles,
+// over pixels down to 1 cm. They move no elevation by more than a millionth of the difference between two pixels.
 constexpr double round_off = 1e-6;
 constexpr double least_share = 0.5 - round_off;
 constexpr Index strip_pixels = Index(1) << 23;  // 64 MiB of doubles
@@ -151,7 +150,7 @@ private:
                 (at(e, n) - at(w, n) - at(e, s) + at(w, s)) / (dx * dy)};
     }
 
-    /// Share of the slopes that keeps the pixel non-negative; 1 where nothing asks for it.
+    /// Share of the slopes with which the pixel stays non-negative; 1 where no limit is needed.
     double share(Index i, Index j) const {
         const double v = at(i, j);
         if (!(v >= 0.0)) return 1.0;

@@ -11,9 +11,9 @@
 namespace frana {
 
 /// A GeoPackage with one layer that grows through a run. GeoPackage and not GeoJSON, because that standard (RFC 7946)
-/// knows longitude and latitude only, while a GeoPackage keeps any CRS and holds all times in one file. Each call adds
-/// all its shapes or none (a transaction); the first one makes the file, or takes away from an older one (of a run that
-/// is resumed) what is not earlier. UserError when the disk refuses, NumericsError for a place that is not finite.
+/// allows longitude and latitude only. A GeoPackage has any CRS and holds all times in one file. Each call adds all its
+/// shapes or none (a transaction). The first one makes the file. From an older one (of a run that is resumed) it takes
+/// away what is not earlier. UserError when the disk refuses, NumericsError for a place that is not finite.
 class ShapeSeries {
 public:
     /// `crs_wkt` of the coordinates, or empty: local metres; the layer has the name of the file.
@@ -23,8 +23,8 @@ public:
     /// Lines of equal value at a time [s]: attributes t_s, level, unit (that of the level).
     void add_lines(double time, const std::vector<std::pair<double, Polyline>>& level_and_line,
                    const std::string& unit);
-    /// Outlines, holes kept, of the cells between the grid's nodes that are not 0 ((nx - 1) (ny - 1) of them, row 0
-    /// south); cells that touch only at a corner belong to different ones. Attributes t_s, area_m2.
+    /// Outlines with holes of the cells between the grid's nodes that are not 0. There are (nx - 1) (ny - 1) cells, row
+    /// 0 south. Cells that touch only at a corner belong to different ones. Attributes t_s, area_m2.
     void add_cells(double time, const GridGeometry& grid, std::vector<std::uint8_t>& cells);
 
 private:

@@ -32,7 +32,7 @@ void append_polygon(const OGRPolygon& polygon, const std::string& place, std::ve
 /// Takes a geometry apart into polygons; counts the rest.
 void collect_polygons(const OGRGeometry& geometry, Census& census, const std::function<void(const OGRPolygon&)>& use);
 
-/// Outlines of the pixels that are not 0, holes kept, largest first; pixels that touch only at a corner belong to
+/// Outlines with holes of the pixels that are not 0, largest first. Pixels that touch only at a corner belong to
 /// different ones. `mask` has the row that `transform` (GDAL's geotransform) puts first in front.
 std::vector<std::unique_ptr<OGRPolygon>> outlines_of(std::vector<std::uint8_t>& mask, Index nx, Index ny,
                                                      const std::array<double, 6>& transform);

@@ -34,7 +34,7 @@ struct CloseFile {
     void operator()(VSILFILE* file) const { VSIFCloseL(file); }
 };
 
-/// Through GDAL, which knows files within archives as well.
+/// Through GDAL, which reads files within archives as well.
 std::uint64_t sum_of_file(const std::string& name) {
     Checksum sum;
     const std::unique_ptr<VSILFILE, CloseFile> file(VSIFOpenL(name.c_str(), "rb"));

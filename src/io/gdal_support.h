@@ -50,19 +50,19 @@ void register_drivers();
 /// file of that kind, with GDAL's reason.
 Dataset open(const std::filesystem::path& file, unsigned kind);
 
-/// gdalwarp with the arguments of its command line, from a dataset into a new one ("MEM" format: `target` is
-/// a mere name). Null when it fails; the reason is in the Messages that are alive.
+/// gdalwarp with the arguments of its command line, from a dataset into a new one. ("MEM" format: `target` is a mere
+/// name.) Null when it fails; the reason is in the Messages that are alive.
 Dataset warp(const std::string& target, GDALDataset& source, const std::vector<std::string>& arguments);
 
 /// A name in GDAL's memory ("/vsimem/...") that no other has: several runs may live in one process.
 std::string name_in_memory(const std::string& end);
-/// The bytes of a file that GDAL made in its memory ("/vsimem/..."), which is given back; none where there is no such file.
+/// The bytes of a file that GDAL made in its memory ("/vsimem/..."), which is freed. None where there is no such file.
 std::string taken_from_memory(const std::string& held);
 
-/// A file name as a shell wants it, quoted only where needed.
+/// A file name for a shell, quoted only where needed.
 std::string shell(const std::string& text);
 
-/// dem.tif, "_utm" -> dem_utm.tif: a name beside the file for the line that cures it. Always a GeoTIFF.
+/// dem.tif, "_utm" -> dem_utm.tif: a name next to the file for the line that cures it. Always a GeoTIFF.
 std::string sibling(const std::filesystem::path& file, const std::string& suffix);
 
 }  // namespace frana::gdal

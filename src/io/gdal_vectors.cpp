@@ -26,15 +26,14 @@ using gdal::vertices;
 /// A layer's geometries in the terrain's coordinates, and how they got there.
 struct Source {
     std::filesystem::path file;
-    std::string layer;  ///< asked for; empty: the only one
+    std::string layer;  ///< the requested one; empty: the only one
     gdal::Dataset dataset;
     std::optional<OGRSpatialReference> terrain;  ///< nothing: unknown
     std::vector<std::string>& log;
     std::string name() const { return file.filename().string(); }
 };
 
-/// How to bring a layer's coordinates to the terrain's; null when they are taken as they are (said in the
-/// log).
+/// How to bring a layer's coordinates to the terrain's. Null when they are taken as they are (said in the log).
 gdal::Transformation to_terrain(Source& source, OGRLayer& layer) {
     const OGRSpatialReference* declared = layer.GetSpatialRef();
     const std::string name = source.name();
@@ -82,7 +81,7 @@ Source open_source(const std::filesystem::path& file, const std::string& crs_wkt
     return source;
 }
 
-/// The layers with features that have a place; others are tables, such as the styles that QGIS keeps in a GeoPackage.
+/// The layers with features that have a place. Others are tables, such as the styles that QGIS stores in a GeoPackage.
 std::vector<OGRLayer*> layers_of(const Source& source) {
     const gdal::Messages quiet;
     std::vector<OGRLayer*> layers;
@@ -97,7 +96,7 @@ std::string names_of(const std::vector<OGRLayer*>& layers) {
     return names;
 }
 
-/// The layer asked for, or the only one; null when there is none.
+/// The requested layer, or the only one; null when there is none.
 OGRLayer* chosen_layer(const Source& source) {
     const std::vector<OGRLayer*> layers = layers_of(source);
     if (!source.layer.empty()) {

@@ -87,8 +87,7 @@ std::string optimised(GDALDataset& dataset, const std::filesystem::path& target,
     return bytes;
 }
 
-/// The raster's CRS with the code of an authority, which is the only way GeoJSON can name it; empty without
-/// one.
+/// The raster's CRS with the code of an authority, which is the only way GeoJSON can name it. Empty without one.
 OGRSpatialReference coded_crs(const std::string& wkt) {
     if (wkt.empty()) return OGRSpatialReference();
     OGRSpatialReference crs = gdal::crs_from_wkt(wkt);
@@ -140,7 +139,7 @@ void write_features(GDALDataset& dataset, const std::vector<std::unique_ptr<OGRP
     }
 }
 
-/// What GDAL keeps beside a raster that cannot hold the names of its classes itself.
+/// The file next to a raster that cannot hold the names of its classes itself, in GDAL's form.
 std::string class_names_xml(const std::vector<RasterClass>& classes) {
     std::string xml =
         "<PAMDataset>\n  <PAMRasterBand band=\"1\">\n    <CategoryNames>\n      <Category>none</Category>\n";

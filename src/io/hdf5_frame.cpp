@@ -144,7 +144,7 @@ Handle open_file(Output& output, bool fresh) {
     const Handle access(output, H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     output.check(H5Pset_file_locking(access, false, true));
     const std::string file = output.file().string();
-    // Most arrays are one chunk: the usual tables of 64 would be kept with each state.
+    // Most arrays are one chunk: the usual tables of 64 would be stored with each state.
     const Handle creation(output, H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     output.check(H5Pset_istore_k(creation, 2));
     return {

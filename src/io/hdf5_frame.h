@@ -17,7 +17,7 @@ struct FileExtent {
     Index offset = 0, bytes = 0;
 };
 
-/// Appends the frame as a group (layout: xdmf_writer.h) and closes the file; the first call with `fresh` replaces
+/// Appends the frame as a group (layout: xdmf_writer.h) and closes the file. The first call with `fresh` replaces
 /// whatever stood at `file`. A group of the same number is replaced. `outside` as in observe/file_columns.h. Returns
 /// where the arrays lie: later frames leave those bytes alone. Throws UserError with path and reason when HDF5 cannot
 /// write.

@@ -72,7 +72,7 @@ std::vector<std::string> words_of(const Access& access, hid_t file) {
     return words;
 }
 
-/// The bytes of the file, made in memory: HDF5 cannot close a compressed file that the disk has no room for.
+/// The bytes of the file, made in memory. HDF5 cannot close a compressed file that the disk has no room for.
 std::vector<char> bytes_of(const Access& access, const PeakBlock& block) {
     const Handle memory(access, H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     access.check(H5Pset_fapl_core(memory, std::size_t{1} << 20, false));

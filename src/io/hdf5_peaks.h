@@ -1,5 +1,5 @@
 #pragma once
-// What an ensemble keeps of its runs, many runs in a file.
+// What an ensemble stores of its runs, many runs in a file.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,8 +16,8 @@ struct PeakBlock {
     std::vector<SparseRasters> peaks;  ///< as many
 };
 
-/// HDF5, compressed: datasets sample, rows and pixels (of each sample), first and count (of each row), and one of each field
-/// (of each pixel). Appears whole or not at all. Throws UserError.
+/// HDF5, compressed. Each sample has sample, rows and pixels. Each row has first and count. Each pixel has one of each
+/// field. Appears whole or not at all. Throws UserError.
 void write_peaks(const std::filesystem::path& file, const PeakBlock& block);
 
 /// Only the fields that are `wanted` have values, those of the others stay empty. Throws UserError for a file that is none of

@@ -74,11 +74,11 @@ private:
 void put_text(const Access& access, hid_t object, const char* name, const std::string& text);
 void put_numbers(const Access& access, hid_t object, const char* name, const std::vector<double>& numbers);
 
-/// The shape of the pieces that write_whole() takes a dataset in, as a chunk has it; all of it where it is empty.
+/// The shape of the pieces of a dataset that write_whole() writes, in the form of a chunk. All of it where it is empty.
 std::vector<hsize_t> piece_of(std::vector<hsize_t> shape, std::size_t bytes_of_a_number);
 
-/// Writes a dataset of that type in memory. In pieces: Linux takes single writes of more than 2 MB at a tenth of
-/// the speed when it finds no large pages free for its cache (measured: 3 or 33 ms for 12 MB).
+/// Writes a dataset of that type in memory. In pieces: Linux may take single writes of more than 2 MB at a tenth of the
+/// speed. That happens when no large pages are free for its cache (measured: 3 or 33 ms for 12 MB).
 void write_whole(const Access& access, hid_t set, hid_t type, const void* values);
 
 /// A dataset's shape and its values as double.
@@ -88,8 +88,8 @@ struct Numbers {
 };
 Numbers read_numbers(const Access& access, hid_t group, const std::string& name);
 
-/// Asks the system for the space before HDF5 writes: HDF5 leaves a broken file behind (and crashes at exit)
-/// when the disk fills up under it. What is too much is given back when HDF5 closes the file.
+/// Allocates the space on the disk before HDF5 writes. When the disk fills up under it, HDF5 leaves a broken file
+/// behind (and crashes at exit). What is too much is given back when HDF5 closes the file.
 void reserve(const Access& access, const std::filesystem::path& file, off_t bytes);
 
 }  // namespace frana::hdf5

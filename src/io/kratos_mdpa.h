@@ -18,13 +18,13 @@ struct KratosMaterial {
 /// modulus density * sound_speed^2 [Pa].
 KratosMaterial kratos_fluid(double density, double viscosity, double sound_speed);
 
-/// The material's body for Kratos: `file` (.mdpa) and ParticleMaterials.json beside it.
+/// The material's body for Kratos: `file` (.mdpa) and, next to it, ParticleMaterials.json.
 ///
 /// Kratos reads no points. It reads a mesh of the body, puts MATERIAL_POINTS_PER_ELEMENT points into each element and
-/// drops the mesh; a point gets the element's volume, and DENSITY times it as mass. So each point becomes a hexahedron
-/// around it with the point's volume and height, and one point per element. Slices that touch share their nodes.
-/// The point's velocity stands in an ElementalData block (MP_VELOCITY), which Kratos keeps with the element; its own
-/// generator starts every point at rest, and `comments` and the README say how to hand it on. The background grid
+/// drops the mesh. A point gets the element's volume, and DENSITY times it as mass. So each point becomes a hexahedron
+/// around it with the point's volume and height, and one point per element. Slices that touch share their nodes. The
+/// point's velocity stands in an ElementalData block (MP_VELOCITY), which Kratos stores with the element. Its own
+/// generator starts every point at rest. `comments` and the README say how to pass the velocity on. The background grid
 /// (_Grid.mdpa) is the user's. Sources: kratosmultiphysics.github.io, MPM Application, Input Files (mdpa, json),
 /// Constitutive Laws, Material Point Variables; Kratos' material_point_generator_utility.cpp, model_part_io.cpp and
 /// displacement_newtonian_fluid_3D_law.cpp (its Check), and tests/cl_tests/solid_cl/linear_elastic_3D_hexa_test.

@@ -77,8 +77,8 @@ bool write_axis(GDALGroup& root, const std::shared_ptr<GDALDimension>& dimension
     return array->Write(&start, &count, nullptr, nullptr, type, values.data());
 }
 
-/// GDAL writes the grid mapping of the systems that its table of CF names knows. For others the mapping has the well-known
-/// text alone, which CF 1.7 and later allow.
+/// GDAL writes the grid mapping of the systems that its table of CF names has. For others the mapping has the
+/// well-known text alone, which CF 1.7 and later allow.
 void place(GDALGroup& root, GDALMDArray& array, const OGRSpatialReference& crs) {
     array.SetSpatialRef(&crs);
     if (array.GetAttribute("grid_mapping")) return;

@@ -27,7 +27,7 @@ std::string number_attributes(Storage storage) {
 
 std::string attribute_text(const std::string& name, int components, const std::string& dimensions,
                            const std::string& numbers, const std::string& place) {
-    // A tensor goes as a matrix: XDMF's Tensor6 counts xx, xy, xz, yy, yz, zz; ours is in the file's `components`.
+    // A tensor goes as a matrix. XDMF's Tensor6 counts xx, xy, xz, yy, yz, zz; ours is in the file's `components`.
     const char* const type = components == 1 ? "Scalar" : components == 3 ? "Vector" : "Matrix";
     const std::string more = components == 1 ? "" : fmt::format(" {}", components);
     return fmt::format(
@@ -116,8 +116,8 @@ private:
                                               collection_text("particles", particles_) + "  </Domain>\n</Xdmf>\n");
     }
 
-    /// HDF5 writes its tables over and over in the same places, and a run that is killed there leaves a file that
-    /// nobody can open. So they are kept apart.
+    /// HDF5 writes its tables over and over in the same places. A run that is killed there leaves a file that cannot be
+    /// opened. So they are stored apart.
     void serialize_file(Archive& archive) {
         const std::filesystem::path file = run_dir_ / "run.h5";
         std::vector<Index> offsets, bytes;

@@ -1,5 +1,5 @@
 #pragma once
-// What a list of laws says to those who read and describe cases: words, keys, and a law from the values of its keys.
+// What a list of laws tells readers and descriptions of cases: words, keys, laws from the values of keys.
 #include <algorithm>
 #include <optional>
 #include <string>

@@ -16,7 +16,7 @@ struct WaterExchange {
     VirtualMass virtual_mass = VirtualMass::none;
     /// B, share of the pore pressure that bears the columns where their pores are full [1]
     double pore_pressure = 1.0;
-    /// Free water over bound volume that fills the pores [1]; with less, B goes down in proportion: a column that
+    /// Free water over bound volume that fills the pores [1]. With less, B goes down in proportion: a column that
     /// stands dry rests on the bed with all its weight. This is that of loose grains, four tenths of them pores.
     double void_ratio = 0.67;
 };
@@ -34,7 +34,8 @@ struct FreeWater {
 
     WaterFriction friction_at(Index k) const { return {friction, coefficients[k]}; }
 
-    /// THEORY (17): share of its weight that water takes off a column's bed, 1 at most: what floats does not pull.
+    /// THEORY (17): share of its weight that water takes off a column's bed. It is 1 at most: buoyancy never makes the
+    /// force on the bed tensile.
     double support(double bound_density, double bound_depth, double depth) const {
         const double full = by.void_ratio * bound_depth;
         const double share = depth < full ? depth / full : 1.0;

@@ -1,5 +1,5 @@
 #pragma once
-// One time step of a speed that friction brakes: what a bed law sees, and solutions that several laws share.
+// One time step of a speed that friction brakes: the state for a bed law, and solutions that several laws share.
 // Numbers of equations: src/shallow/THEORY.md, section 9.
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace frana {
 
-/// What a bed law sees of a node. Real: double, or Double4 for four nodes at once.
+/// A node's state for a bed law. Real: double, or Double4 for four nodes at once.
 template <class Real>
 struct BedStateOf {
     Real normal_gravity;  ///< N / kappa: normal force per mass, over |V|/|v| [m/s^2]
@@ -71,12 +71,12 @@ template <class Real>
     return select((s0 + gain <= 0.0) | (ratio <= 0.0), none, speed);
 }
 
-/// THEORY (40): one step of  ds/dt = drive - f(s)  from s0 with f linear about the speed that backward Euler found: its
-/// change times (1 + x) (1 - exp(-x)) / x, x = dt f'. Exact for linear friction, third order for any, for stiff
-/// friction backward Euler itself; a steady speed stays, and what backward Euler stopped stays stopped. f' is taken two
-/// thirds of the way, where the line has the mean of f over the step up to its third derivative. (Not the chord from
-/// s0: where granular and yielding beds leave rest f is steep for a moment, and a small change of s0 would come out a
-/// thousand times as large.) `slope`: f'(s) [1/s] at s > 0.
+/// THEORY (40): one step of  ds/dt = drive - f(s)  from s0, with f linear about the speed that backward Euler found.
+/// The result is its change times (1 + x) (1 - exp(-x)) / x, x = dt f'. Exact for linear friction, third order for any,
+/// for stiff friction backward Euler itself. A steady speed stays, and what backward Euler stopped stays stopped. f' is
+/// taken two thirds of the way. There the line has the mean of f over the step up to its third derivative. It is not
+/// the chord from s0. Where granular and yielding beds leave rest f is steep for a moment. A small change of s0 would
+/// then come out a thousand times as large. `slope`: f'(s) [1/s] at s > 0.
 template <class Slope>
 double relaxed_speed(double s0, double euler, double dt, const Slope& slope) {
     const double change = euler - s0;

@@ -7,7 +7,7 @@ namespace frana::laws {
 /// What a case that does not give a key means.
 enum class Missing {
     refused,  ///< the law needs it, or the key that stands in its place
-    usual,    ///< the parameter keeps the value that its struct gives it, which is the key's default
+    usual,    ///< the parameter has the value that its struct gives it, which is the key's default
     none      ///< likewise, but the term is left out rather than has a default
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Laws that differ in space: those of one kind in a table, and which of them each node of a grid has.
+// Spatially varying laws: those of one kind in a table, and which of them each node of a grid has.
 #include <array>
 #include <cstdint>
 #include <cstring>

@@ -1,6 +1,6 @@
 #pragma once
-// Four laws of a kind that differ in their numbers, as one: one formula instead of four. A law that can be used so is a template
-// of the type of its numbers, `LawOf<double>` by itself and `LawOf<Double4>` of four.
+// Four laws of a kind that differ in their numbers, as one: one formula instead of four. A law that can be used so is a
+// template of the type of its numbers. It is `LawOf<double>` by itself and `LawOf<Double4>` of four.
 #include <array>
 #include <cstddef>
 #include <cstring>

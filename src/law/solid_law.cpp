@@ -42,8 +42,8 @@ SymOf<Double4> each(const SymOf<Double4>& a, Sym3 (*function)(const Sym3&)) {
 namespace solid {
 
 /// In triaxial compression Mohr and Coulomb's law reads q = p 6 sin(phi) / (3 - sin(phi)), and |s| =
-/// sqrt(2/3) q; in plane strain half the difference of the principal stresses is sin(phi) times their mean,
-/// and |s| = sqrt(2) times that half.
+/// sqrt(2/3) q. In plane strain half the difference of the principal stresses is sin(phi) times their mean, and |s| =
+/// sqrt(2) times that half.
 DruckerPrager DruckerPrager::of(const Elastic& elastic, double friction_angle, double cohesion, Cone cone) {
     expect(friction_angle > 0.0 || cohesion == 0.0, "cohesion of this law needs friction: its cone has an apex");
     const double sine = std::sin(friction_angle);
@@ -52,8 +52,8 @@ DruckerPrager DruckerPrager::of(const Elastic& elastic, double friction_angle, d
     return {elastic, alpha, cohesion > 0.0 ? cohesion / std::tan(friction_angle) : 0.0};
 }
 
-/// Newton's steps for the unknown in which the equation is convex, s for n <= 1, else the rate: from a start beyond
-/// the root they come down to it and never pass it.
+/// Newton's steps for the unknown in which the equation is convex: s for n <= 1, else the rate. From a start beyond the
+/// root they come down to it and never pass it.
 double HerschelBulkley::left_of(double over, double dt) const {
     if (!(over > 0.0) || !(consistency > 0.0)) return 0.0;
     const double g = shear * dt, power = exponent <= 1.0 ? 1.0 / exponent : exponent;

@@ -2,7 +2,7 @@
 // Laws of 3D material: stress of a point from its own numbers, and how these change with the
 // deformation. Numbers of equations: src/solid3d/THEORY.md, section 7. A law is a struct of parameters with
 //
-//   kStates      numbers that a point keeps for it
+//   kStates      numbers that a point stores for it
 //
 //   kAverages    whether J is drawn to its mean over the neighbourhood, a cure for noisy pressure in fluids
 //
@@ -22,7 +22,7 @@
 
 namespace frana {
 
-/// What a law learns of a step: L_kl = dv_k/dx_l at the point [1/s], and the step [s].
+/// A law's input of a step: L_kl = dv_k/dx_l at the point [1/s], and the step [s].
 template <class Real>
 struct DeformationOf {
     Square<Real> gradient;
@@ -88,8 +88,8 @@ template <class Real>
     return 0.5 * bulk * pressed * pressed + 0.25 / shear * j * contracted(s, s);
 }
 
-/// THEORY (17), (18): the same with a yield stress: an elastic solid of shear modulus G below it, Bingham's fluid
-/// above. The viscous flow is solved in the step, so that any viscosity is stable and material at rest really rests.
+/// THEORY (17), (18): the same with a yield stress. Below it an elastic solid of shear modulus G, above it Bingham's
+/// fluid. The viscous flow is solved in the step, so that any viscosity is stable and material at rest really rests.
 struct Bingham {
     static constexpr int kStates = 6;  ///< deviatoric stress [Pa]
     static constexpr bool kAverages = true;
@@ -122,7 +122,7 @@ struct Bingham {
     double explicit_viscosity() const { return 0.0; }
 };
 
-/// THEORY (19): Herschel and Bulkley's fluid, as Bingham's above, but beyond the yield stress tau = tau_Y + K rate^n:
+/// THEORY (19): Herschel and Bulkley's fluid, as Bingham's above. But beyond the yield stress tau = tau_Y + K rate^n:
 /// mud thins with shear, n < 1. In pure shear of rate gamma: tau = tau_Y + K gamma^n.
 struct HerschelBulkley {
     static constexpr int kStates = 6;  ///< deviatoric stress [Pa]
@@ -147,7 +147,7 @@ struct HerschelBulkley {
         const Real left = (yield_stress + left_of(over, d.dt)) / select(size > 0.0, size, Real{} + 1.0);
         (trial * select(size > yield_stress, left, Real{} + 1.0)).deviator().write(state);
     }
-    /// What flow leaves after dt of a stress beyond the yield stress, s + G dt (s / K)^(1/n) = over: the trial's
+    /// What flow leaves after dt of a stress beyond the yield stress, s + G dt (s / K)^(1/n) = over. It is the trial's
     /// stress less what relaxes at the end's rate [Pa].
     double left_of(double over, double dt) const;
     [[gnu::always_inline]] Double4 left_of(const Double4& over, double dt) const {
@@ -192,13 +192,13 @@ struct Elastic {
 };
 
 /// Where Drucker and Prager's cone meets Mohr and Coulomb's pyramid: in triaxial compression, or in plane
-/// strain, where flow without dilatancy makes the stress across the plane the mean of the others, so that
-/// both laws agree.
+/// strain. In plane strain, flow without dilatancy makes the stress across the plane the mean of the others. Both laws
+/// then agree.
 enum class Cone { compression, plane_strain };
 
-/// THEORY (21), (22): sand, soil: elastic as above within the cone |s| = alpha (p + p_t) of Drucker and Prager, in
-/// Kirchhoff stress, p_t = c cot(phi). Flow keeps the volume (no dilatancy). At the apex the material parts: it carries
-/// the tension p_t and no more, and the volume it gained has to be closed before it carries pressure again
+/// THEORY (21), (22): sand, soil. It is elastic as above within the cone |s| = alpha (p + p_t) of Drucker and Prager,
+/// in Kirchhoff stress, p_t = c cot(phi). Flow conserves the volume (no dilatancy). At the apex the material parts: it
+/// carries the tension p_t and no more. The volume it gained has to be closed before it carries pressure again
 /// (Tampubolon et al. 2017, sec. 4.3.4).
 struct DruckerPrager {
     static constexpr int kStates = 7;  ///< logarithmic elastic strain; volume gained at the apex, ln J [1]

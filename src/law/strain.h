@@ -8,7 +8,7 @@ namespace frana {
 Sym3 exponential_of_large(const Sym3& a);
 Sym3 logarithm_of_large(const Sym3& a);
 
-/// Largest entries that the series below take to round-off, with few and with many terms: principal values up to
+/// Largest entries that the series below take to round-off, with few and with many terms. Principal values may be up to
 /// three times that.
 constexpr double kSmallStrain = 0.02, kMiddlingStrain = 0.1;
 
@@ -47,8 +47,8 @@ template <class Real>
     return exponential_series<8>(a);
 }
 
-/// ln(I + a): |z| is up to 0.031 and 0.18; the first terms left out are below 0.031^10 / 11 and 0.18^22 / 23 < 1e-16
-/// of the first.
+/// ln(I + a): |z| is up to 0.031 and 0.18. The first terms left out are below 0.031^10 / 11 and 0.18^22 / 23 < 1e-16 of
+/// the first.
 template <class Real>
 [[gnu::always_inline]] inline SymOf<Real> logarithm(const SymOf<Real>& a) {
     const Real size = largest_entry(a);

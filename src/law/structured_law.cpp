@@ -54,8 +54,8 @@ PlasticStep ColumnLaw::yield(double cohesion, ColumnStress& s) const {
 
 namespace {
 
-/// The search for t below: Newton's step within a bracket that grows by doubling until it holds the root,
-/// halved where Newton leaves it.
+/// The search for t below: Newton's step within a bracket. The bracket grows by doubling until it holds the root, and
+/// is halved where Newton leaves it.
 class Bracket {
 public:
     explicit Bracket(double reach) : reach_(reach) {}
@@ -77,8 +77,8 @@ constexpr double kStressError = 1e-7;  // of zz, over the strength and the weigh
 
 }  // namespace
 
-/// Looks for the strain t across the bed, beyond that of the elastic step, at which the return in space
-/// leaves zz where it was prescribed. Finds it wherever it is.
+/// Finds the strain t across the bed, beyond that of the elastic step. At t the 3D return leaves zz where it was
+/// prescribed. Finds it wherever it is.
 PlasticStep ColumnLaw::search_cone(double k, ColumnStress& s) const {
     const double first = s.xx + s.yy + s.zz, mean = first / 3.0, g = shear_, bulk = bulk_;
     const double x = s.xx - mean, y = s.yy - mean, z = s.zz - mean, xy = s.xy;
@@ -114,14 +114,14 @@ PlasticStep ColumnLaw::search_cone(double k, ColumnStress& s) const {
     return {2.0 * half_trace, half_trace + radius};
 }
 
-/// search_cone where Newton's method gets there from the elastic step, or from where the mean stress is zz, and the flow is
-/// that of the cone's side; returns in which columns. `plastic`: of those. With t the deviator's z moves, x and y by half as
-/// much against it, and I1; what zz misses is all but linear in t, and two passes mostly do. A pass has one root, q = sqrt(J2)
-/// of the trial, and one division: q^3 times what is missed over q^3 times its slope.
+/// search_cone where Newton's method gets there from the elastic step, or from where the mean stress is zz. The flow
+/// must be that of the cone's side. Returns in which columns. `plastic`: of those. With t the deviator's z moves, x and
+/// y by half as much against it, and I1. What zz misses is all but linear in t, and two passes mostly do. A pass has
+/// one root, q = sqrt(J2) of the trial, and one division. That is q^3 times what is missed over q^3 times its slope.
 template <class Real, class Mask>
 inline Mask ColumnLaw::newton_to_cone(Mask yields, Real k, ColumnStressOf<Real>& s,
                                       PlasticStepOf<Real>& plastic) const {
-    constexpr int kUnasked = 2, kMost = 6;  // passes: a choice after each would keep the next columns waiting
+    constexpr int kUnasked = 2, kMost = 6;  // passes: a choice after each would delay the next columns
     const double g = shear_, bulk = bulk_, turn = 4.0 / 3.0 * g, per = 1.0 / (g + 9.0 * bulk * alpha_ * dilates_);
     const double kept = 1.0 - g * per,
                  swell = 3.0 * bulk * dilates_ * per;  // of q, in what is left of q and in the mean
@@ -179,10 +179,9 @@ double rate(const Face& of, const Face& flow, double poisson) {
 
 }  // namespace
 
-/// In principal values s_1 >= s_2 of the plane the pyramid with zz as prescribed is bounded by s_1 <= high,
-/// s_2 >= low, (s_1 - s_2) + (s_1 + s_2) sin(phi) <= 2 c cos(phi). Elastic and plastic strain across the bed
-/// are free, so that stress is taken away by the stiffness of plane stress. Faces first, then the corners
-/// between them (Koiter).
+/// The plane has principal values s_1 >= s_2. The pyramid with zz as prescribed is bounded by s_1 <= high, s_2 >= low,
+/// (s_1 - s_2) + (s_1 + s_2) sin(phi) <= 2 c cos(phi). Elastic and plastic strain across the bed are free. So stress is
+/// taken away by the stiffness of plane stress. Faces first, then the corners between them (Koiter).
 PlasticStep ColumnLaw::yield_to_hexagon(double cohesion, ColumnStress& s) const {
     const double centre = 0.5 * (s.xx + s.yy), half = 0.5 * (s.xx - s.yy), radius = std::hypot(half, s.xy);
     const double cosine = radius > 0.0 ? half / radius : 1.0, sine = radius > 0.0 ? s.xy / radius : 0.0;

@@ -1,9 +1,8 @@
 #pragma once
-// Structured solids: how the stress of a depth-averaged column goes on with its deformation in the plane,
-// elastic until it yields, and how yielding breaks it (van den Bout et al. 2021,
-// doi:10.5194/gmd-14-1841-2021, sec. 2.2, with the stress across the bed prescribed by the weight). Tension
-// is positive. Functions are for one column (Real is double) or for four at once (Double4).
-// Numbers of equations: src/structured/THEORY.md.
+// Structured solids: how the stress of a depth-averaged column goes on with its deformation in the plane. It is elastic
+// until it yields, and yielding breaks it. After van den Bout et al. (2021, doi:10.5194/gmd-14-1841-2021, sec. 2.2,
+// with the stress across the bed prescribed by the weight). Tension is positive. Functions are for one column (Real is
+// double) or for four at once (Double4). Numbers of equations: src/structured/THEORY.md.
 #include <cmath>
 
 #include "base/simd.h"
@@ -30,7 +29,7 @@ struct ColumnStepOf {
 };
 using ColumnStep = ColumnStepOf<double>;
 
-/// What a column of this law keeps.
+/// What a column of this law stores.
 template <class Real>
 struct ColumnStateOf {
     ColumnStressOf<Real> stress;
@@ -40,13 +39,12 @@ struct ColumnStateOf {
 using ColumnState = ColumnStateOf<double>;
 
 /// Where the column yields. Cones of Drucker and Prager that meet Mohr and Coulomb's pyramid in triaxial
-/// compression, or in plane strain without dilatancy; or the pyramid itself, which the prescribed zz cuts in
-/// a hexagon.
+/// compression, or in plane strain without dilatancy. Or the pyramid itself, which the prescribed zz cuts in a hexagon.
 enum class ColumnYield { compression, plane_strain, hexagon };
 
-/// THEORY (18): what breaks bonds while the column yields, in parts of the critical strain: the plastic dilation in the
-/// plane, as in the paper; the largest principal plastic strain; or any strain at all, behind an onset, with
-/// what is left decaying exponentially, as in the paper's source code.
+/// THEORY (18): what breaks bonds while the column yields, in parts of the critical strain. dilation: the plastic
+/// dilation in the plane, as in the paper. extension: the largest principal plastic strain. strain: any strain at all,
+/// behind an onset, with what is left decaying exponentially, as in the paper's source code.
 enum class DamageBy { dilation, extension, strain };
 
 /// What a user says of a structured solid.
@@ -103,8 +101,8 @@ public:
     /// Of waves in the plane, zz given, THEORY (19): sqrt(E / (rho (1 - nu^2))) [m/s]
     double sound_speed(double density) const { return std::sqrt(plane_ / density); }
 
-    /// THEORY (11), (12): the step with zz = `weight` [Pa, negative] at its end and the undamaged `cohesion` [Pa]: half
-    /// the turn, the strain, half the turn. Damage of this step weakens the next.
+    /// THEORY (11), (12): the step with zz = `weight` [Pa, negative] at its end and the undamaged `cohesion` [Pa]. It
+    /// is half the turn, the strain, half the turn. Damage of this step weakens the next.
     template <class Real>
     [[gnu::always_inline]] void update(const ColumnStepOf<Real>& step, Real weight, Real cohesion,
                                        ColumnStateOf<Real>& state) const {
@@ -140,8 +138,8 @@ public:
         return sqrt(0.5 * (x * x + y * y + z * z) + s.xy * s.xy) + alpha_ * first - k_ * cohesion;
     }
 
-    /// THEORY (14): closed-form return of a trial stress in space with invariants sqrt(J2) = q and I1 to the cone of
-    /// strength k, its apex included; any dilatancy.
+    /// THEORY (14): closed-form return of a trial stress in 3D with invariants sqrt(J2) = q and I1. It goes to the cone
+    /// of strength k, its apex included, for any dilatancy.
     ConeReturn to_cone(double q, double first, double k) const;
     /// Elastic stress `s`, zz as prescribed, to the yield surface with zz as it is.
     PlasticStep yield(double cohesion, ColumnStress& s) const;

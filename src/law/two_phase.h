@@ -1,9 +1,8 @@
 #pragma once
-// What solids with their confined water (c) and free water (u) do to one another where both are: drag,
-// virtual mass, buoyancy (Pudasaini 2012, doi:10.1029/2011JF002186; van den Bout et al. 2021,
-// doi:10.5194/gmd-14-1841-2021, eqs. 31 to 39), and the step of their velocities, exact for constant
-// coefficients. The printed equations were reconstructed from the prose and from the literature they cite.
-// THEORY: src/water/THEORY.md.
+// What solids with their confined water (c) and free water (u) do to one another where both are. This is drag, virtual
+// mass and buoyancy (Pudasaini 2012, doi:10.1029/2011JF002186; van den Bout et al. 2021, doi:10.5194/gmd-14-1841-2021,
+// eqs. 31 to 39). Also the step of their velocities, exact for constant coefficients. The printed equations were
+// reconstructed from the prose and from the literature they cite. THEORY: src/water/THEORY.md.
 #include "base/constants.h"
 #include "base/types.h"
 
@@ -35,8 +34,8 @@ struct TwoPhaseMaterial {
 /// rho_c of solids with their confined water [kg/m^3], THEORY (16)
 double bound_density(const TwoPhaseMaterial& material, const Mixture& mixture);
 
-/// Speeds at which a grain of diameter d [m] settles in still fluid [m/s]: Stokes's, and Zanke's (1977),
-/// which tends to 0.9 of Stokes's for small grains and to sqrt((rho_s / rho_f - 1) g d) for large ones.
+/// Speeds at which a grain of diameter d [m] settles in still fluid [m/s]: Stokes's, and Zanke's (1977). Zanke's tends
+/// to 0.9 of Stokes's for small grains and to sqrt((rho_s / rho_f - 1) g d) for large ones.
 double stokes_velocity(const TwoPhaseMaterial& material, double d);
 double zanke_velocity(const TwoPhaseMaterial& material, double d);
 /// THEORY (22): Stokes's below 0.1 mm, Zanke's from there on; in water it falls by an eighth there.
@@ -52,8 +51,8 @@ public:
     double coefficient(const Mixture& mixture, double flux) const;
     /// The same of grains alone, all water free: alpha_s alpha_f (rho_s - rho_f) g over a speed to the j.
     double unsplit(double solids, double flux) const;
-    /// That speed, of grains: U_T (P F + (1 - P) G) + S_p [m/s]; F as in Kozeny and Carman (32), G as in
-    /// Richardson and Zaki (33).
+    /// That speed, of grains: U_T (P F + (1 - P) G) + S_p [m/s]. F is as in Kozeny and Carman (32), G as in Richardson
+    /// and Zaki (33).
     double grain_speed(const Mixture& mixture, double flux) const;
     /// Of blocks: U_T G + K / alpha_u [m/s]
     double block_speed(const Mixture& mixture, double flux) const;
@@ -70,9 +69,8 @@ private:
     Settling grain_, block_;
 };
 
-/// Virtual mass that c carries when it speeds up against u, as a number C_VM: Pudasaini's (2012) grows
-/// without bound where there is little free water, Pudasaini and Mergili's (2019, doi:10.1029/2019JF005204)
-/// does not. THEORY (23).
+/// Virtual mass that c carries when it speeds up against u, as a number C_VM. Pudasaini's (2012) grows without bound
+/// where there is little free water. Pudasaini and Mergili's (2019, doi:10.1029/2019JF005204) does not. THEORY (23).
 enum class VirtualMass { none, unbounded, bounded };
 double virtual_mass_number(VirtualMass law, const TwoPhaseMaterial& material, const Mixture& mixture);
 /// Per area, of a mixture `depth` [m] deep: alpha_c rho_f C_VM h [kg/m^2]
@@ -85,8 +83,8 @@ Vec2 buoyancy(double fluid_density, double normal_gravity, double bound_depth, c
 double basal_stress(const TwoPhaseMaterial& material, const Mixture& mixture, double normal_gravity, double depth,
                     double support);
 
-/// eta = eta_0 exp(beta C) of water with fines (O'Brien and Julien 1988), not below clear water's [Pa s];
-/// eta_0 in Pa s: tables are often in poise, 0.1 Pa s. `concentration`: of the volume.
+/// eta = eta_0 exp(beta C) of water with fines (O'Brien and Julien 1988), not below clear water's [Pa s]. eta_0 is in
+/// Pa s: tables are often in poise, 0.1 Pa s. `concentration`: of the volume.
 double mud_viscosity(double eta_0, double beta, double concentration, double clear = 1e-3);
 
 /// One phase above a place, per area; nothing moves that has no mass.
@@ -105,10 +103,10 @@ struct Exchange {
     Vec2 carried{0, 0};
 };
 
-/// THEORY (24) to (26): a step of dt [s] of both velocities under forces, drag and virtual mass, stable for any step.
-/// What one gets the other loses, to round-off. The slip follows its equation (mu + chi) dD/dt = mu (F_c / m_c - F_u /
-/// m_u) - h C |D|^(j - 1) D, mu = m_c m_u / (m_c + m_u), exactly for j = 1, and for j = 2 when force and slip
-/// are parallel (else to first order).
+/// THEORY (24) to (26): a step of dt [s] of both velocities under forces, drag and virtual mass. It is stable for any
+/// step. What one gets the other loses, to round-off. The slip follows its equation (mu + chi) dD/dt = mu (F_c / m_c -
+/// F_u / m_u) - h C |D|^(j - 1) D, mu = m_c m_u / (m_c + m_u). It does so exactly for j = 1, and for j = 2 when force
+/// and slip are parallel (else to first order).
 void exchange(const Exchange& by, double dt, Phase& c, Phase& u);
 
 }  // namespace frana

@@ -44,7 +44,7 @@ using WaterLaw = std::variant<water_law::None, water_law::Manning, water_law::Da
 using WaterLawMap = laws::LawMap<WaterLaw>;
 
 /// Stress over density k |V| V: g n^2 / T^(1/3) of Manning (n in s/m^(1/3)), or f / 8 of Darcy and Weisbach
-/// (f [1]); V is the velocity along the bed, T the thickness across it.
+/// (f [1]). V is the velocity along the bed, T the thickness across it.
 struct WaterFriction {
     enum class Law { none, manning, darcy_weisbach };
     Law law = Law::none;
@@ -58,8 +58,8 @@ inline WaterFriction water_friction(const WaterLaw& law) {
     return {};
 }
 
-/// Viscosity of free water in its flow (Pudasaini 2012, doi:10.1029/2011JF002186; van den Bout et al. 2021,
-/// doi:10.5194/gmd-14-1841-2021, eqs. 29 and 30, averaged over the depth).
+/// Viscosity of free water in its flow, averaged over the depth (Pudasaini 2012, doi:10.1029/2011JF002186; van den Bout
+/// et al. 2021, doi:10.5194/gmd-14-1841-2021, eqs. 29 and 30).
 struct WaterViscosity {
     double kinematic = 0.0;  ///< nu = eta / density [m^2/s]; 0: the flow feels none
     double shear = 3.0;  ///< chi of the bed's stress over density, chi nu V / T: 3 for a parabola over the depth [1]
@@ -68,9 +68,9 @@ struct WaterViscosity {
     double profile = 0.0;  ///< xi of that term: how solids are spread over the depth, 0 evenly, 3 as a parabola [1]
 };
 
-/// THEORY (11): the longest stable step under viscosity inside, on cells of a length [s]; infinite without. It is explicit: a
-/// thin cell beside deep ones has four faces twice as thick as itself, two with twice the viscosity, so that its rates are
-/// 24 nu / cell^2 at most, half that in water of one depth.
+/// THEORY (11): the longest stable step under viscosity inside, on cells of a length [s]; infinite without. It is
+/// explicit. A thin cell adjacent to deep ones has four faces twice as thick as itself, two with twice the viscosity.
+/// So its rates are 24 nu / cell^2 at most, half that in water of one depth.
 inline double viscous_step(const WaterViscosity& viscosity, double cell) {
     constexpr double kSafe = 0.9 * 2.0 / 24.0;
     return kSafe * cell * cell / viscosity.kinematic;
@@ -91,8 +91,8 @@ inline double quadratic_drag(const WaterFriction& friction, const WaterBed& bed)
     return 0.0;
 }
 
-/// The deceleration by viscosity at the bed over the speed, on the map as along the bed, below a flow `thickness` across
-/// the bed [1/s].
+/// The deceleration by viscosity at the bed over the speed, on the map as along the bed [1/s]. The flow is `thickness`
+/// across the bed.
 inline double linear_drag(const WaterViscosity& viscosity, double thickness) {
     return viscosity.shear * viscosity.kinematic / (thickness * thickness);
 }

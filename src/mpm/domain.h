@@ -1,5 +1,5 @@
 #pragma once
-// A point's domain: the parallelogram of its edges r1, r2, known to the rest of the scheme by its second moments.
+// A point's domain: the parallelogram of its edges r1, r2. The rest of the scheme uses its second moments only.
 // src/shallow/THEORY.md (53).
 #include <cmath>
 
@@ -68,9 +68,9 @@ struct Gradient {
 };
 
 /// THEORY (12): the gradient without what a domain narrower than a sixteenth of a cell does not span. Points that
-/// converge are squeezed to such domains, but a node, a cell away, would take their gradient times that cell for
-/// motion: a kinetic energy that no matter has, and that carries a block beyond its stop.
-/// Real: double, or Double4 of four points. r: edges [cells], c: the gradient.
+/// converge are squeezed to such domains. But a node, a cell away, would take their gradient times that cell for
+/// motion. That is a kinetic energy that no matter has, and that carries a block beyond its stop. Real: double, or
+/// Double4 of four points. r: edges [cells], c: the gradient.
 template <class Real>
 [[gnu::always_inline]] inline void leave_spanned(const Real& r1x, const Real& r1y, const Real& r2x, const Real& r2y,
                                                  Real& cxx, Real& cxy, Real& cyx, Real& cyy) {

@@ -1,6 +1,6 @@
 #pragma once
-// Halving points whose domains have grown, of any model that has columns with the names of shallow/columns.h (Points;
-// Held: where what they carry lies). Numbers of equations: src/shallow/THEORY.md.
+// Halving points whose domains have grown. It serves any model that has columns with the names of shallow/columns.h
+// (Points; Held: where what they carry lies). Numbers of equations: src/shallow/THEORY.md.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -38,8 +38,9 @@ bool clamp_edge(Real& x, Real& y, double longest) {
     return true;
 }
 
-/// Both edges. A point that splits may have edges twice as long as one that does not: drawn in before it is halved, a high
-/// column that falls apart in a few steps would have its mass back in the middle, and energy that it had turned to motion.
+/// Both edges. A point that splits may have edges twice as long as one that does not. Suppose they were drawn in before
+/// it is halved. A high column that falls apart in a few steps would have its mass back in the middle. It would also
+/// have energy that it had turned to motion.
 template <class Held>
 bool clamp_edges(Held& held, Index p, double longest) {
     const bool first = clamp_edge(held.r1x[p], held.r1y[p], longest);
@@ -64,13 +65,14 @@ template <class Held>
 constexpr double kSameLength = sizeof(*Held().r1x.data()) == sizeof(float) ? 1e-5 : 1e-9;
 
 /// How many points a domain becomes: 1, 2, or 4 where both edges are equally long. Then round-off must not choose one, or
-/// mirror images part.
+/// mirror particles part.
 template <class Held>
 int parts_of(const Held& held, Index p, double mass, const HalvingRules& rules) {
     constexpr double same = kSameLength<Held>;
     const Edges e = edges_of(held, p);
     const double l1 = e.length1_2(), l2 = e.length2_2();
-    // Edges are cut to the splitting length where that is a cell or more: it must not take more than round-off to reach it.
+    // Edges are cut to the splitting length where that is a cell or more. It must not take more than round-off to reach
+    // it.
     const bool is_long = std::max(l1, l2) >= (1.0 - same) * rules.length * rules.length;
     if (!is_long || std::abs(e.area()) < 0.1 || mass <= rules.least_mass) return 1;
     return std::abs(l1 - l2) <= same * std::max(l1, l2) ? 4 : 2;
@@ -139,9 +141,9 @@ void halve(Points& c, Held& held, Index p, Index q, bool first, double cell) {
     held.vy[p] += dvy;
 }
 
-/// Only after all halving, or its order would tell. Slopes of linear shapes jump at nodes: on the outermost one a point's
-/// gradient would be of a neighbour that it gives no mass, and on the last of the cell beyond. It stays off them by more
-/// than round-off.
+/// Only after all halving, or its order would tell. Slopes of linear shapes jump at nodes. On the outermost one a
+/// point's gradient would be of a neighbour that it gives no mass. On the last it would be of the cell beyond. It stays
+/// off them by more than round-off.
 template <class Points>
 void hold_inside(Points& c, Index p, const TileGrid& grid, double off) {
     const auto hold = [&](double& u, Index nodes) { u = std::clamp(u, off, static_cast<double>(nodes - 1) - off); };

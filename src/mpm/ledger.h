@@ -13,8 +13,8 @@ namespace frana {
 /// Two numbers without Eigen's alignment: a struct of these and of doubles has no gaps.
 using Flat2 = Eigen::Matrix<double, 2, 1, Eigen::DontAlign>;
 
-/// Sums over all steps: their error does not grow with the number of steps. Sums: a struct of doubles, and vectors of them,
-/// which a step fills; each of its numbers is summed by itself.
+/// Sums over all steps: their error does not grow with the number of steps. Sums: a struct of doubles, and vectors of
+/// them, which a step fills. Each of its numbers is summed by itself.
 template <class Sums>
 class Ledger {
     static_assert(alignof(Sums) == alignof(double) && sizeof(Sums) % sizeof(double) == 0 &&

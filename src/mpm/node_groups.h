@@ -1,5 +1,5 @@
 #pragma once
-// Which nodes of a tile matter: a tile of near-empty ground costs next to nothing when loops walk marked nodes only.
+// Which nodes of a tile matter. A tile of near-empty ground costs next to nothing when loops visit marked nodes only.
 #include <array>
 #include <cstdint>
 
@@ -15,7 +15,7 @@ static_assert(kTile == 16, "a tile has 64 groups");
 
 inline NodeGroups group_of(Index column, Index row) { return NodeGroups{1} << (4 * row + column / 4); }
 
-/// What a tile's points touch: groups of the tile itself (4) and its eight neighbours, row by row from the lower left.
+/// What a tile's points reach. It is groups of the tile itself (4) and its eight neighbours, row by row from the lower left.
 using TileReach = std::array<NodeGroups, 9>;
 
 /// The nodes at which stencils of a tile's points begin, up to half a tile outside of it.
@@ -32,7 +32,7 @@ public:
         const Int4 bit = Int4{1, 1, 1, 1} << ((i - static_cast<std::int32_t>(i_)) & 31);
         for (int n = 0; n < lanes; ++n) row_[row[n]] |= static_cast<std::uint32_t>(bit[n]);
     }
-    /// All groups with a node from `before` nodes before a mark to `after` nodes behind it, in x and in y (both < 8).
+    /// All groups with a node from `before` nodes before a mark to `after` nodes behind it. In x and in y, both < 8.
     TileReach reach(int before, int after) const {
         TileReach reach{};
         constexpr int kEdge = kTile;
@@ -62,7 +62,7 @@ private:
     std::uint32_t row_[32] = {};
 };
 
-/// Groups of a tile grown by three rows and one group (four nodes) each way; `around` has the tile (4) and its eight
+/// Groups of a tile grown by three rows and one group (four nodes) each way. `around` has the tile (4) and its eight
 /// neighbours.
 inline NodeGroups grown(const TileReach& around) {
     const auto sideways = [&](std::size_t middle) {

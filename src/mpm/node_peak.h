@@ -1,5 +1,5 @@
 #pragma once
-// What nodes ever saw, of models that hold it node by node. The depth-averaged model holds the same quantities as
+// Peaks of nodes, of models that hold them node by node. The depth-averaged model holds the same quantities as
 // arrays, four nodes at a time (shallow/peaks.h).
 #include <algorithm>
 #include <array>

@@ -15,7 +15,7 @@ namespace {
 /// Fewer points than this are not worth waking other threads for.
 constexpr Index kPointsForThreads = 4096;
 
-/// Calls body(key, first point, one behind the last) for points in a row that have the same key: most do, and a count
+/// Calls body(key, first point, one behind the last) for points in a row that have the same key. Most do, and a count
 /// in memory that each of them raises would wait for the one before.
 template <class Body>
 void for_each_row(const std::int32_t* keys, Index from, Index count, Body&& body) {
@@ -34,7 +34,8 @@ void for_part_of_thread(Index count, Body&& body) {
 }
 
 /// All threads of a team call this: number p of the field becomes the one at order[p], p < kept, in `spare`. Returns the
-/// room that is spare then: the field's own, which its owner changes for `spare`, or the same where it is too narrow.
+/// room that is spare then. It is the field's own, which its owner changes for `spare`, or the same where it is too
+/// narrow.
 template <class Field>
 double* permuted(Field& field, const std::int32_t* order, Index kept, double* spare) {
     using Number = typename Field::value_type;
@@ -83,7 +84,7 @@ void PointOrder::tally(Part& part) const {
     });
 }
 
-/// Within a tile the points of one part follow those of the part before: the order is that of a single part.
+/// Within a tile the points of one part follow those of the part before. The order is that of a single part.
 void PointOrder::lay_out(ActiveTiles& active) {
     const auto end = parts_.begin() + static_cast<std::ptrdiff_t>(parts_in_use_);
     used_.clear();
@@ -167,7 +168,7 @@ void PointOrder::retain_places(Index count, const std::vector<std::uint8_t>& gon
     retain(gone, active, [](Index place) { return static_cast<std::int32_t>(place); });
 }
 
-/// All threads permute one field at a time: scattering all fields in one loop keeps too many streams open.
+/// All threads permute one field at a time: scattering all fields in one loop has too many streams open.
 void PointOrder::permute(const std::vector<PointField>& fields) {
     const Index kept = static_cast<Index>(order_.size());
     const std::int32_t* const order = order_.data();

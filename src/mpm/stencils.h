@@ -34,8 +34,8 @@ struct Reach {
     }
 };
 
-/// Weights, times 8, of a sub-point that lies d, -1 to 1, behind the middle of four nodes. No choice of three among them:
-/// `before` and `behind` are zero where d has the other sign, and take from a parabola what it has too much there.
+/// Weights, times 8, of a sub-point that lies d, -1 to 1, behind the middle of four nodes. No choice of three among
+/// them. `before` and `behind` are zero where d has the other sign. They take from a parabola what it has too much there.
 [[gnu::always_inline]] inline void window_weights(Double4 d, Double4 w[4]) {
     const Double4 before = d - abs(d), behind = d + abs(d), from_first = 2.0 - 2.0 * d, from_last = 2.0 + 2.0 * d;
     w[0] = before * before;

@@ -9,7 +9,7 @@
 
 namespace frana {
 
-/// Wall time of the named phases of a step, and CPU time where asked for.
+/// Wall time of the named phases of a step, and CPU time on request.
 class StepClock {
 public:
     /// Reads the CPU clock too from now on: a system call at both ends of a phase.

@@ -1,6 +1,5 @@
 #pragma once
-// What every model keeps of its points between two steps: their numbers in their order, and the tiles they are
-// sorted by.
+// What every model saves of its points between two steps. It is their numbers in their order, and the tiles they are sorted by.
 #include <string>
 
 #include "base/error.h"

@@ -1,6 +1,6 @@
 #pragma once
-// The background grid: nodes stored row-major in tiles of 16 x 16, with a ring of spare tiles around the domain.
-// Only tiles near material are ever touched; arrays come zeroed from the system and cost nothing until then.
+// The background grid: nodes stored row-major in tiles of 16 x 16. A ring of spare tiles is around the domain. Only
+// tiles near material are ever used; arrays come zeroed from the system and cost nothing until then.
 #include <sys/mman.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ struct Pair {
 };
 
 /// A zeroed array whose untouched pages take no memory. `guard` numbers before the first and behind the last may be read:
-/// they are zero. Numbers lie where their type wants to, which calloc alone does not promise beyond 16 bytes.
+/// they are zero. Numbers are aligned for their type, which calloc alone does not promise beyond 16 bytes.
 template <class T>
 class LazyArray {
 public:
@@ -52,8 +52,8 @@ private:
     };
     using Block = std::unique_ptr<void, Free>;
 
-    /// A large block is asked for without its pages being set aside. Linux refuses more than the machine has otherwise, even
-    /// where next to none of it will be touched.
+    /// A large block is allocated without its pages being set aside. Linux refuses more than the machine has otherwise,
+    /// even where next to none of it will be used.
     static Block zeroed(std::size_t bytes) {
         constexpr std::size_t large = std::size_t{1} << 26;
         if (bytes < large) {
@@ -116,8 +116,8 @@ private:
 /// Gathers at rest before a tile sleeps: two rounds of splitting and merging that found nothing to do.
 constexpr std::uint8_t kAsleep = 6;
 
-/// Tiles that hold particles (with their ranges), those tiles grown by one (the work list of node loops), and whose turn
-/// it is to scatter.
+/// Tiles that hold particles (with their ranges), and those tiles grown by one (the work list of node loops). Also
+/// whose turn it is to scatter.
 struct ActiveTiles {
     std::vector<Index> tile;            ///< ids of tiles with particles, ascending
     std::vector<Index> begin;           ///< first particle of each, and the count at the end
@@ -160,7 +160,7 @@ void for_each_tile(const ActiveTiles& active, Body&& body) {
 }
 
 /// Tiles of the work list side by side, at most so many. Loops that go through a run row by row read memory in long
-/// stretches: twice as fast as tile by tile where arrays do not fit into the caches.
+/// stretches. Where arrays do not fit into the caches that is twice as fast as tile by tile.
 constexpr Index kRunTiles = 8;
 struct TileRun {
     const Index* tile;  ///< their ids

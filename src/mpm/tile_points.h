@@ -21,7 +21,7 @@ inline bool near_side(const TileGrid& grid, Index tile) {
 }
 
 /// Calls body(storage index, count) for the rows of nodes that the points of a full tile reach when they have not
-/// drifted: no point of another tile of its colour reaches these.
+/// drifted. No point of another tile of its colour reaches these.
 template <class Body>
 void for_each_row_of_full(const TileGrid& grid, const ActiveTiles& active, Index n, Body&& body) {
     constexpr Index kFull = 256;  // a tile with fewer points may not need all its nodes

@@ -1,5 +1,5 @@
 #pragma once
-// Which tile may scatter when: tiles that share nodes one after the other in a fixed order, all others at once.
+// Which tile may scatter when. Tiles that share nodes do so one after the other in a fixed order, all others at once.
 #include <sched.h>
 
 #include <array>
@@ -12,11 +12,12 @@
 
 namespace frana {
 
-/// Tiles of one colour share no node. A tile waits for the tiles beside it that have a lower colour, and for nothing else:
-/// every sum has one order, whatever the number of threads, and no thread waits for the last tile of a colour.
+/// Tiles of one colour share no node. A tile waits for the adjacent tiles that have a lower colour, and for nothing
+/// else. Every sum has one order, whatever the number of threads. And no thread waits for the last tile of a colour.
 class TileTurns {
 public:
-    /// Begins a new list: for tiles with the ids `tile`, in a domain of so many; one waits for at most `most_waits` others.
+    /// Begins a new list: for tiles with the ids `tile`, in a domain of so many. One waits for at most `most_waits`
+    /// others.
     void begin(const std::vector<Index>& tile, Index of_domain, std::size_t most_waits) {
         place_.resize(static_cast<std::size_t>(of_domain));
         for (std::size_t n = 0; n < tile.size(); ++n) place_[tile[n]] = static_cast<std::int32_t>(n);
@@ -51,7 +52,7 @@ public:
     void run(bool in_parallel, Body&& body) const {
         const Index count = static_cast<Index>(turn_.size());
         const std::uint32_t round = ++round_;
-        // Monotonic: who waits does so for tiles that some thread has taken before.
+        // Monotonic: a thread waits only for tiles that some thread has taken before.
 #pragma omp parallel for schedule(monotonic : dynamic, 1) if (in_parallel)
         for (Index k = 0; k < count; ++k) {
             const Index n = turn_[k];

@@ -1,6 +1,6 @@
 #pragma once
-// Keeping a state and taking it up again: whoever has something to keep names it once, and the same lines save and
-// load. Knows no file format; io/checkpoint_file.h has one.
+// Saving a state and restoring it. Each owner names its data once, and the same lines save and load. Has no file
+// format; io/checkpoint_file.h has one.
 #include <cstdint>
 #include <string>
 #include <type_traits>
@@ -22,8 +22,8 @@ public:
 
     virtual ~Archive() = default;
     virtual bool loading() const = 0;
-    /// Whether the same simulation comes back to this state after a step of ordinary length at most: what that leaves as it
-    /// is need not be kept.
+    /// Whether the same simulation comes back to this state after a step of ordinary length at most. What that leaves
+    /// as it is need not be saved.
     virtual bool aside() const { return false; }
 
     /// A vector of double, std::int64_t, Index or std::uint8_t; resized when loading.

@@ -109,7 +109,7 @@ void Barriers::step_without_forces(const BarrierLoads& loads) {
     for (std::size_t n = 0; n < names_.size(); ++n) take(n, loads.barriers[n]);
 }
 
-/// Keeps what means need, and the largest ones. Returns the horizontal force's over `blur`.
+/// Stores what means need, and the largest ones. Returns the horizontal force's over `blur`.
 double Barriers::note_means(Watched& watched, const Received& now, double blur, std::vector<MeanForce>& means) {
     double longest = blur;
     for (const MeanForce& mean : means) longest = std::max(longest, mean.window);

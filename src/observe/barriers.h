@@ -45,9 +45,9 @@ inline constexpr std::size_t kMostBarrierTables = 24;
 
 /// barriers/<name>.csv: forces and moments on each barrier after every step, means over the step; appended at
 /// every output. Columns: t [s], fx, fy, fz [N], mx, my, mz [N m], mean_force [N] (horizontal, mean over
-/// `blur` up to now), run_up [m], overtopped [m3], and f0x, f0y, f0z [N], m0x, m0y, m0z [N m] of face 0, and
-/// so on. Where no forces are known (columns alone) t, run_up and overtopped. More than kMostBarrierTables
-/// barriers, which columns alone can have, leave their summaries only.
+/// `blur` up to now), run_up [m] and overtopped [m3]. Then come f0x, f0y, f0z [N], m0x, m0y, m0z [N m] of face 0, and
+/// so on. Where no forces are known (columns alone) t, run_up and overtopped. More than kMostBarrierTables barriers,
+/// which columns alone can have, leave their summaries only.
 class Barriers final : public Observer {
 public:
     Barriers(std::filesystem::path run_dir, const std::vector<NamedBarrier>& barriers,

@@ -7,8 +7,8 @@
 
 namespace frana {
 
-/// Residuals (src/shallow/THEORY.md, 60 and 61) of the three balances between a first status and a later one of the
-/// same run.
+/// Residuals of three balances between a first status and a later one of the same run (src/shallow/THEORY.md, 60 and
+/// 61).
 struct Budget {
     double mass_error = 0.0;  ///< (m + m_left + m_bed - m_0 - m_in) / (m_0 + m_in), m_0 with that of the bed [1]
     double bed_error = 0.0;   ///< of the bed alone, over what it had at the start and was given [1]
@@ -38,8 +38,8 @@ inline Budget budget(const Status& first, const Status& now) {
     return result;
 }
 
-/// What came in after the start: by inflows, and of releases that entered later [kg]. Of what enters with the first frame, as a
-/// release that the flow reaches at once, it was there at the start.
+/// What came in after the start: by inflows, and of releases that entered later [kg]. What enters with the first frame
+/// was there at the start, such as a release that is reached at once.
 inline double mass_came_in(const Status& first, const Status& now) { return now.mass_in - first.mass_in; }
 
 /// The largest values over a run, and when they were reached.

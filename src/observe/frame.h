@@ -1,5 +1,5 @@
 #pragma once
-// How the outside sees a state: named columns with units. Writers and figures know frames, never the solver.
+// A state for the outside: named columns with units. Writers and figures use frames, never the solver.
 #include <array>
 #include <optional>
 #include <string>
@@ -21,16 +21,16 @@ struct Field {
 };
 
 /// Scalars of one step: budgets and extremes. Sums run over all material still in the domain. Between frames
-/// velocities (momentum, kinetic energy, speeds) stand half a step behind the time; in a frame they are at it.
+/// velocities (momentum, kinetic energy, speeds) are half a step behind the time. In a frame they are at it.
 struct Status : Clock {
     Index particles = 0;
     double mass = 0.0;       ///< [kg]
     double mass_left = 0.0;  ///< left through open sides or exits since the start [kg]
-    double mass_in = 0.0;    ///< came in by inflows, or was released later, since the start [kg]; its momentum
-                             ///< and energy count as what did not leave
+    double mass_in = 0.0;    ///< came in by inflows, or was released later, since the start [kg]. Its momentum and
+                             ///< energy count as what did not leave
     std::array<double, 2> momentum{};        ///< [kg m/s]
-    std::array<double, 2> impulse{};         ///< of all forces since the start [kg m/s]; with walls their push
-                                             ///< is recorded as what closes the balance
+    std::array<double, 2> impulse{};         ///< of all forces since the start [kg m/s]; the force of walls is recorded
+                                             ///< as what closes the balance
     std::array<double, 2> momentum_left{};   ///< carried out by what left [kg m/s]
     double water = 0.0, water_volume = 0.0;  ///< free water's part of `mass` [kg], and its volume [m3]
     double kinetic = 0.0;                    ///< [J]
@@ -41,7 +41,7 @@ struct Status : Clock {
     /// Of 3D points since the start, parts of `dissipated` [J].
     struct In3d {
         double friction = 0.0;   ///< along the bed and barriers
-        double walls = 0.0;      ///< lost to their pushes
+        double walls = 0.0;      ///< lost to their forces
         double material = 0.0;   ///< yielding and viscosity
         double numerical = 0.0;  ///< what is left: of the scheme
         double volume = 0.0;     ///< of the points now, compressed as they are [m3]; not a part, but a diagnostic
@@ -58,8 +58,8 @@ struct Status : Clock {
     double p2g_mass_error = 0.0;      ///< |sum_i M_i - sum_p m_p| / sum_p m_p of this step [1]
     double p2g_momentum_error = 0.0;  ///< |sum_i P_i - sum_p m_p v_p| / sum_p m_p |v_p| [1]
     double max_depth = 0.0;           ///< [m]
-    double max_speed = 0.0;  ///< largest speed along the bed, of nodes deeper than a tenth of the footprint depth
-                             ///< [m/s]; of 3D points that of the fastest
+    double max_speed = 0.0;  ///< largest speed along the bed of nodes deeper than a tenth of the footprint depth [m/s].
+                             ///< Of 3D points that of the fastest
     double max_speed_on_map = 0.0;  ///< largest particle speed along the map [m/s]
     double mean_speed = 0.0;        ///< mean over the mass, along the bed; 3D points have their whole speed [m/s]
     double covered_area = 0.0;      ///< deeper than the footprint depth now [m2]
@@ -70,7 +70,7 @@ struct Status : Clock {
 struct PhaseTime {
     std::string name;
     double seconds = 0.0;      ///< wall time
-    double cpu_seconds = 0.0;  ///< of the thread that steps; zero unless the solver was asked to count it
+    double cpu_seconds = 0.0;  ///< of the thread that steps; zero unless the solver counts it
     Index calls = 0;
 };
 

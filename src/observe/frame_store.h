@@ -8,7 +8,7 @@
 
 namespace frana {
 
-/// The memory that a model's frames point into. Frames come alike, so memory is asked for once.
+/// The memory that a model's frames point into. Frames are alike, so memory is allocated once.
 class FrameStore {
 public:
     /// A new frame: what the last one pointed to may be overwritten.
@@ -30,7 +30,7 @@ public:
         return numbers;
     }
 
-    /// The memory of the last frame, which stays as it is while somebody holds it; the next frame has other memory.
+    /// The memory of the last frame. It stays as it is while somebody holds it, and the next frame has other memory.
     std::shared_ptr<const void> give_away() {
         used_ = 0;
         auto given = std::make_shared<const std::vector<std::vector<double>>>(std::move(storage_));

@@ -67,7 +67,7 @@ void History::observe(const Frame& frame) {
 
 void History::serialize(Archive& archive) {
     table_.serialize(archive);
-    if (!first_) first_.emplace();  // a state is kept after the first step() only
+    if (!first_) first_.emplace();  // a state is saved after the first step() only
     frana::serialize(archive, "first", *first_);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // Looking at a run from inside: when, and what happens when it goes wrong. What is made of a frame (tables here,
-// lines and pictures in vtk_io) is the work handed in.
+// lines and pictures in vtk_io) is the work that the caller gives.
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,9 +13,9 @@ namespace frana {
 class InsituWork {
 public:
     virtual ~InsituWork() = default;
-    /// Looks at a frame; `number` counts what was made so far (0, 1, 2, ...). Any exception says that it failed.
+    /// Observes a frame; `number` counts what was made so far (0, 1, 2, ...). Any exception says that it failed.
     virtual void sample(const Frame& frame, Index number) = 0;
-    virtual void serialize(Archive&) {}  ///< as Observer::keep
+    virtual void serialize(Archive&) {}  ///< as Observer::serialize
 };
 
 /// When: neither member: at every output.
@@ -33,7 +33,7 @@ struct InsituTally {
 };
 
 /// Calls the work when it is time to, and at the end. A work that fails is counted in `tally`, which outlives the
-/// observer, and the run goes on: the run is worth more than its pictures.
+/// observer. The run goes on, since it is worth more than its pictures.
 class InsituObserver final : public Observer {
 public:
     InsituObserver(InsituTimes times, std::unique_ptr<InsituWork> work, InsituTally& tally)

@@ -10,7 +10,7 @@
 
 namespace frana {
 
-/// Saves, and after rewind() loads. Throws InternalError when what is asked for is not there, or is there twice.
+/// Saves, and after rewind() loads. Throws InternalError when an entry is missing, or is there twice.
 class MemoryArchive final : public Archive {
 public:
     struct Entry {
@@ -48,7 +48,7 @@ private:
     bool loading_ = false;
 };
 
-/// All that a kept state holds, but for the clock's wall time.
+/// All that a saved state holds, but for the clock's wall time.
 inline std::map<std::string, MemoryArchive::Entry> without_clock(const MemoryArchive& archive) {
     std::map<std::string, MemoryArchive::Entry> entries;
     for (const auto& [name, entry] : archive.entries())
@@ -56,7 +56,7 @@ inline std::map<std::string, MemoryArchive::Entry> without_clock(const MemoryArc
     return entries;
 }
 
-/// All that a simulation keeps, likewise.
+/// All that a simulation serializes, likewise.
 template <class Simulation>
 std::map<std::string, MemoryArchive::Entry> state_bits(Simulation& run) {
     MemoryArchive archive;

@@ -39,8 +39,8 @@ struct BarrierLoad {
 };
 
 struct BarrierLoads {
-    /// A time over which forces are to be averaged: a first contact is a blow as hard as sound is fast, which is
-    /// artificial [s]. Zero before anything can load barriers.
+    /// A time over which forces are to be averaged [s]. A first contact is a blow as hard as sound is fast, which is
+    /// artificial. Zero before anything can load barriers.
     double blur = 0.0;
     bool measures = true;               ///< forces are known now, where they ever are
     std::vector<BarrierLoad> barriers;  ///< in the order of the scene
@@ -53,25 +53,26 @@ public:
     virtual Sample at(const Vec2& point) const = 0;  ///< bilinear between nodes; beyond them the nearest
     /// nullptr where nothing measures loads.
     virtual const BarrierLoads* loads() const { return nullptr; }
-    /// What passed each section of the scene since the start, by the paths of the columns [m3]; none where that is not known.
+    /// What passed each section of the scene since the start, by the paths of the particles [m3]. None where that is
+    /// not known.
     virtual std::vector<double> passed() const { return {}; }
 };
 
-/// Looks on while a case runs; never changes it.
+/// Observes a case while it runs; never changes it.
 class Observer {
 public:
     virtual ~Observer() = default;
     virtual std::string name() const = 0;              ///< for the timing table
     virtual void step(const Status&, const Probe&) {}  ///< after every step (and once at the start)
-    /// Asked after every step that ends between outputs: is a frame wanted now? Then observe_between() gets it.
+    /// Called after every step that ends between outputs: whether observe_between() gets a frame now.
     virtual bool wants_frame(const Status&) { return false; }
     virtual void observe_between(const Frame&) {}
     virtual void observe(const Frame&) {}  ///< at the start, at every output time and at the end
-    /// Whether observe() looks at more of a frame than its status: where nobody does, no fields are worked out.
+    /// Whether observe() reads more of a frame than its status. Where no observer does, no fields are computed.
     virtual bool looks_at_fields() const { return true; }
     virtual void end(const Frame&) {}  ///< once, with the last frame, after observe()
-    /// Saves what the observer needs to go on, or takes it up again before its first call; then its files are those of
-    /// that moment: what was written later is taken back. Throws UserError when they are not there any more.
+    /// Saves what the observer needs to go on, or restores it before its first call. Its files are then those of that
+    /// moment: what was written later is removed. Throws UserError when they are not there any more.
     virtual void serialize(Archive&) {}
 };
 

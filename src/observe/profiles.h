@@ -34,8 +34,8 @@ struct Corner {
 /// The nodes around a point that have weight; empty when the point lies outside the rectangle of nodes.
 std::vector<Corner> corners(const GridGeometry& grid, const Vec2& point);
 
-/// Bilinear between the nodes of a frame. Velocity is weighted by depth, so that a dry node beside the flow's
-/// margin does not slow it down. Outside the grid, or beside a node without bed: elevation NaN, depth zero.
+/// Bilinear between the nodes of a frame. Velocity is weighted by depth, so that a dry node at the flow's margin does
+/// not slow it down. Outside the grid, or next to a node without bed: elevation NaN, depth zero.
 Sample sample(const Frame& frame, const Vec2& point);
 
 /// profiles/<name>.csv: at every output the flow along named lines, stations half a cell apart. Columns: t

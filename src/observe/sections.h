@@ -20,7 +20,7 @@ struct SectionLine {
     bool covers(const Vec2& place) const {
         return place.x() >= terrain[0] && place.y() >= terrain[1] && place.x() <= terrain[2] && place.y() <= terrain[3];
     }
-    double solid_share = 1.0;  ///< of the volume that passes: grains in a material whose law knows their share [1]
+    double solid_share = 1.0;  ///< of the volume that passes: grains in a material whose law has their share [1]
     static constexpr double kFar = std::numeric_limits<double>::infinity();
 };
 
@@ -38,8 +38,8 @@ struct SectionSummary {
 double discharge_through(const SectionLine& section, double spacing, const Probe& probe);
 
 /// sections/<name>.csv: what passes named lines, after every step; appended at every output. Columns: t [s], discharge
-/// [m3/s] (of the nodes at that time), volume [m3] (net since the start, counted by the columns that passed: exact), sediment [m3] (the solid
-/// part of that volume).
+/// [m3/s] (of the nodes at that time), volume [m3] (net since the start, exact: counted by the particles that passed),
+/// sediment [m3] (the solid part of that volume).
 class Sections final : public Observer {
 public:
     Sections(const std::filesystem::path& run_dir, std::vector<SectionLine> lines, double spacing,

@@ -11,9 +11,9 @@
 
 namespace frana {
 
-/// Writes a CSV while a run goes on. Rows are kept until flush(), which appends whole lines, so the file can
-/// be read at any moment. A NaN becomes an empty cell (outside the grid, no data); other numbers are written
-/// with as many digits as it takes to read the same number back.
+/// Writes a CSV while a run goes on. Rows are held until flush(), which appends whole lines, so the file can be read at
+/// any moment. A NaN becomes an empty cell (outside the grid, no data). Other numbers are written with as many digits
+/// as it takes to read the same number back.
 class TableWriter {
 public:
     static constexpr double empty = std::numeric_limits<double>::quiet_NaN();

@@ -3,12 +3,12 @@
 
 namespace frana {
 
-/// Bed elevation at a map point, bilinear between the nodes [m]; NaN outside the outer nodes or where a node
-/// that takes part has no data.
+/// Bed elevation at a map point, bilinear between the nodes [m]. NaN outside the outer nodes or where a node that takes
+/// part has no data.
 double bed_elevation(const Raster& bed, double x, double y);
 
-/// The same wherever a point is: beyond the outer nodes that of the nearest place on them, and where some nodes that take
-/// part have no data the mean of those that have, by their weights; NaN where none has [m].
+/// The same wherever a point is [m]. Beyond the outer nodes it is that of the nearest place on them. Where some nodes
+/// that take part have no data it is the mean of the others, by their weights. NaN where none has data.
 double bed_below(const Raster& bed, double x, double y);
 
 /// Steepness |grad Z| of the bed at the node nearest to a map point [1]; 0 where it is not known.

@@ -30,8 +30,8 @@ struct SeedsColumn {
     std::vector<double> values;
 };
 
-/// The quantities that every format holds, beside the id 0, 1, ... Throws InternalError on a number that is
-/// not finite, so that none reaches a file.
+/// The quantities that every format holds, besides the id 0, 1, ... Throws InternalError on a number that is not
+/// finite, so that none reaches a file.
 std::vector<SeedsColumn> seeds_columns(const SeedsExport& data);
 
 /// The same as a table that writers take; `columns` is what seeds_columns() gave and must outlive it.
@@ -41,8 +41,8 @@ PointTable seeds_table(const SeedsExport& data, const std::vector<SeedsColumn>& 
 /// read back to the same bits. Throws UserError when the file cannot be written.
 void write_seeds_csv(const std::filesystem::path& file, const SeedsExport& data);
 
-/// One JSON object: format, count, density [kg/m3], crs_wkt, units (name: unit), id, and an array per column;
-/// position and velocity are arrays of pairs. Numbers read back to the same bits. Throws as above.
+/// One JSON object: format, count, density [kg/m3], crs_wkt, units (name: unit), id, and an array per column. Position
+/// and velocity are arrays of pairs. Numbers read back to the same bits. Throws as above.
 void write_seeds_json(const std::filesystem::path& file, const SeedsExport& data);
 
 }  // namespace frana

@@ -1,7 +1,7 @@
 #pragma once
-// Particle generation after Fois, de Falco, Formaggia (2025), Algorithm 1, with one change: a particle's
-// volume is the integral of the release depth over its own patch instead of an equal share, so that the total
-// volume and the local depth are both right.
+// Particle generation after Fois, de Falco, Formaggia (2025), Algorithm 1, with one change. A particle's volume is the
+// integral of the release depth over its own patch instead of an equal share. So the total volume and the local depth
+// are both right.
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,13 +36,13 @@ struct ReleaseReport {
 /// [m^3]. Throws UserError on a release whose depth is no number, or without any volume.
 double volume_of(const std::vector<Release>& releases, const GridGeometry& grid);
 
-/// Places the particles of all releases on the grid of `bed` (material lives between its outer nodes) and
-/// gives each the volume of its own patch. On the lattice the first point stands half a spacing from node (0,
-/// 0), the spacing is cell / sqrt(per_cell), or is sought so that the number comes near to `count` (a lattice
-/// that fits the grid is taken when it comes within 2 %); r2 and slope meet `count` exactly. Same input, same
-/// bits. Cost: linear in particles plus pixels plus crossings of the outline with the patch grid. `reports`
-/// gets one entry per release; remarks are appended to `log`. Throws UserError when a release has no material
-/// on the grid, its outline crosses itself, or it lies on nodata.
+/// Places the particles of all releases on the grid of `bed` (material lives between its outer nodes). Gives each the
+/// volume of its own patch. On the lattice the first point stands half a spacing from node (0, 0). The spacing is cell
+/// / sqrt(per_cell), or is sought so that the number comes near to `count`. A lattice that fits the grid is taken when
+/// it comes within 2 %. r2 and slope meet `count` exactly. Same input, same bits. Cost: linear in particles plus pixels
+/// plus crossings of the outline with the patch grid. `reports` gets one entry per release; remarks are appended to
+/// `log`. Throws UserError when a release has no material on the grid, its outline crosses itself, or it lies on
+/// nodata.
 Seeds make_seeds(const std::vector<Release>& releases, const Raster& bed, const ParticleOptions& options,
                  std::vector<ReleaseReport>& reports, std::vector<std::string>& log);
 

@@ -54,7 +54,7 @@ Patch* fullest_neighbour(Patches& patches, Index row, Index column, double dust)
     return fullest;
 }
 
-/// Hands over the volume of hardly covered patches, which are left with area zero. Sums are kept.
+/// Passes on the volume of hardly covered patches, which are left with area zero. Sums stay the same.
 void give_away_dust(Patches& patches, double dust) {
     for (Index j = 0; j < patches.rows(); ++j)
         for (std::size_t k = patches.start[j]; k < patches.start[j + 1]; ++k) {
@@ -68,8 +68,8 @@ void give_away_dust(Patches& patches, double dust) {
         }
 }
 
-/// Where the particle of a patch stands: on the lattice point, or, where that is no ground of the domain, in
-/// the part of the patch within the domain, or in one of the patch's quarters. NaN when nothing has ground.
+/// Where the particle of a patch stands: on the lattice point. Where that is no ground of the domain, it stands in the
+/// patch's part within it, or a quarter. NaN when nothing has ground.
 class Standing {
 public:
     Standing(const Raster& bed, const Lattice& lattice)
@@ -129,7 +129,7 @@ Trial trial_of(const std::vector<Material>& materials, const Lattice& lattice) {
     return trial;
 }
 
-/// The lattice nearest to `spacing` whose lines fall on the grid's: k per cell edge, or an edge of k cells.
+/// The lattice nearest to `spacing` whose lines fall on the grid's: k per cell edge, or edges of k cells.
 Lattice fitting(double spacing, double cell) {
     const double per_edge = cell / spacing;
     return {per_edge >= 1.0 ? cell / std::round(per_edge) : cell * std::round(1.0 / per_edge), 0.0, 0.0};

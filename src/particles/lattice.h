@@ -12,8 +12,8 @@ namespace frana {
 constexpr double kDustFraction = 1e-3;
 
 /// The lattice whose number of particles comes nearest to `wanted`, starting from the spacing that the total
-/// area suggests: first lattices that fit the grid (cell / k or k cell, accepted within 2 %), then any
-/// spacing and phase (sought to 0.2 %). Remarks go to `log`.
+/// area suggests. First it tries lattices that fit the grid (cell / k or k cell, accepted within 2 %). Then it tries
+/// any spacing and phase (sought to 0.2 %). Remarks go to `log`.
 Lattice lattice_of_count(const std::vector<Material>& materials, double cell, double total_area, Index wanted,
                          std::vector<std::string>& log);
 

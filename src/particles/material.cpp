@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kFar = 1e300;
 
-/// Pixels that stand a whole number of half cells from the nodes are put there exactly: the difference of two
-/// map coordinates of 10^6 m carries errors of 1e-10 m, which would leave a sliver beside every lattice line.
+/// Pixels that stand a whole number of half cells from the nodes are put there exactly. The difference of two map
+/// coordinates of 10^6 m carries errors of 1e-10 m. These would leave a sliver at every lattice line.
 double snapped(double offset, double cell) {
     const double step = 0.5 * cell;
     const double whole = std::round(offset / step) * step;

@@ -53,9 +53,9 @@ public:
 
     bool contains(double x, double y) const;
 
-    /// Integrates depth over every patch of the lattice within `within`, exactly: outline and raster are cut
-    /// at lattice lines and pixel edges. Calls `visit` for each row of patches with material, southernmost
-    /// first. Returns what is wrong with the outline, if anything.
+    /// Integrates depth over every patch of the lattice within `within`, exactly. Outline and raster are cut at lattice
+    /// lines and pixel edges. Calls `visit` for each row of patches with material, southernmost first. Returns what is
+    /// wrong with the outline, if anything.
     OutlineFaults integrate(const Lattice& lattice, const Box& within, const VisitPatchRow& visit) const;
 
     /// Volume and area within `within` from the pixels and the outline alone (no lattice).

@@ -19,8 +19,8 @@ struct OutlineFaults {
 };
 
 /// Area of the rings in each cell of the grid of lines x_lines x y_lines (ascending). Every edge is cut at
-/// the lines it crosses; each piece adds the trapezium between itself and the right side of its cell, and its
-/// height to all cells further right (the signed-area accumulation of scanline font rasterisers). Cost: edge
+/// the lines it crosses. Each piece adds the trapezium between itself and the right side of its cell. It adds its
+/// height to all cells further right. This is the signed-area accumulation of scanline font rasterisers. Cost: edge
 /// crossings plus cells between the leftmost and the rightmost crossing of a row.
 class OutlineArea {
 public:

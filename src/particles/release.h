@@ -8,7 +8,7 @@
 namespace frana {
 
 /// One mass at rest or in motion at the start. Where an outline and a depth field are both given, material
-/// lies where both have it; with neither, it lies everywhere on the grid.
+/// lies where both have it. With neither, it lies everywhere on the grid.
 struct Release {
     std::optional<Polygons> outline;    ///< empty: everywhere the depth field has material
     std::optional<Raster> depth_field;  ///< vertical depth, constant per pixel of its own; NaN or <= 0: none [m]

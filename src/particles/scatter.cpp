@@ -43,8 +43,7 @@ private:
     std::array<std::uint64_t, D> step_{}, state_{};
 };
 
-/// Points sorted into square buckets, row after row, and the nearest of them to a place; ties go to the
-/// first.
+/// Points sorted into square buckets, row after row, to find the nearest of them to a place. Ties go to the first.
 class Nearest {
 public:
     Nearest(const std::vector<Vec2>& points, const Box& box, double bucket) : box_(box), per_metre_(1.0 / bucket) {
@@ -107,8 +106,8 @@ private:
     std::vector<Vec2> sorted_;
 };
 
-/// Relative density of particles at a place, at most 1: |grad Z| of the nearest node over its mean where
-/// there is material, held within [1/3, 3], over 3.
+/// Relative density of particles at a place, at most 1. It is |grad Z| of the nearest node over its mean where there is
+/// material, held within [1/3, 3], over 3.
 class SteepnessDensity {
 public:
     SteepnessDensity(const Raster& bed, const Material& material) : grid_(bed.geometry) {
@@ -144,8 +143,7 @@ std::vector<Vec2> first_points(const Material& material, Index count, Accept&& a
     std::vector<Vec2> points;
     points.reserve(count);
     Roberts<D> sequence;
-    // A material that fills less than a ten-thousandth of its own box is met by this many trials all the
-    // same.
+    // Even a material that fills less than a ten-thousandth of its own box is met by this many trials.
     const Index most = 100000 * count + 10000000;
     for (Index trial = 0; static_cast<Index>(points.size()) < count; ++trial) {
         if (trial == most)
@@ -180,8 +178,7 @@ void require_ground(const Material& material, const std::vector<Vec2>& points, c
                             g.ny - 1 - std::lround(p.y() / g.cell), g.x0 + p.x(), g.y0 + p.y()));
 }
 
-/// A particle too close to others to own a cell takes half of what the owner of its cell has; halves are
-/// exact.
+/// A particle too close to others to own a cell takes half of what the owner of its cell has. Halves are exact.
 void share_with_empty(const Lattice& cells, const Nearest& nearest, std::vector<double>& volumes,
                       std::vector<double>& areas) {
     const std::vector<Vec2>& points = nearest.points();

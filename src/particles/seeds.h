@@ -6,7 +6,7 @@
 namespace frana {
 
 /// The material points at the start of a run, one array per quantity, equal lengths. A point is a column of
-/// material: its mass is the integral of the release over the point's own patch of the map.
+/// material. Its mass is the integral of the release over the point's own patch of the map.
 struct Seeds {
     std::vector<double> x, y;    ///< map position [m]
     std::vector<double> vx, vy;  ///< horizontal velocity [m/s]

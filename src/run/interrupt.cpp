@@ -15,7 +15,7 @@ struct sigaction action_of(int signal) {
     struct sigaction action {};
     action.sa_handler = note_signal;
     sigemptyset(&action.sa_mask);
-    // The default action comes back after the first signal: whoever presses Ctrl-C twice wants out now.
+    // The default action comes back after the first signal: a second Ctrl-C ends the program at once.
     action.sa_flags = SA_RESTART | (signal == SIGPIPE ? 0 : static_cast<int>(SA_RESETHAND));
     return action;
 }
@@ -26,7 +26,7 @@ Interrupt::Interrupt(Listen listen) : listening_(listen == Listen::signals) {
     if (!listening_) return;
     signal_arrived = 0;
     for (std::size_t i = 0; i < kSignals.size(); ++i) {
-        // Whoever was told to ignore a hang-up (nohup) goes on ignoring it.
+        // A process told to ignore a hang-up (nohup) goes on ignoring it.
         expect(sigaction(kSignals[i], nullptr, &previous_[i]) == 0, "signal handler");
         if (kSignals[i] == SIGHUP && previous_[i].sa_handler == SIG_IGN) continue;
         const struct sigaction action = action_of(kSignals[i]);

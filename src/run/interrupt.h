@@ -5,10 +5,10 @@
 
 namespace frana {
 
-/// Notices Ctrl-C, SIGTERM, a closed terminal (SIGHUP) and a closed pipe behind standard output (SIGPIPE), so that a
-/// run can finish its step and leave valid files. While a listening object lives it owns these signals; a second one
-/// of the same kind kills the program as usual, but for SIGPIPE, which every further line would raise. One listening
-/// object at a time.
+/// Notices Ctrl-C, SIGTERM, a closed terminal (SIGHUP) and a closed pipe behind standard output (SIGPIPE). So a run can
+/// finish its step and leave valid files. While a listening object lives it owns these signals. A second one of the
+/// same kind kills the program as usual. Not so SIGPIPE, which every further line would raise. One listening object at
+/// a time.
 class Interrupt {
 public:
     enum class Listen { no, signals };
@@ -17,7 +17,7 @@ public:
     Interrupt(const Interrupt&) = delete;
     Interrupt& operator=(const Interrupt&) = delete;
 
-    /// Ask for a stop from inside the program.
+    /// Requests a stop from inside the program.
     void request() { requested_ = true; }
     bool requested() const;
     /// Whether it owns the signals.

@@ -20,7 +20,7 @@ std::size_t terminal_width() {
     return 100;
 }
 
-/// Of the mass by its `density`, and of free water beside it by its own [m3].
+/// Of the mass by its `density`, and of free water by its own [m3].
 double volume_of(const Status& now, double density) { return (now.mass - now.water) / density + now.water_volume; }
 
 std::string state_text(const Status& now, double density) {
@@ -117,7 +117,7 @@ std::string Progress::bar(const Status& now, double wall) const {
                        clock_text(remaining(now, wall)), state_text(now, density_));
 }
 
-/// The share is that of the whole run, also when it goes on from a kept state.
+/// The share is that of the whole run, also when it goes on from a saved state.
 std::string Progress::json(const Status& now, double wall) const {
     const double share = end_time_ > 0.0 ? std::clamp(now.time / end_time_, 0.0, 1.0) : 1.0;
     return fmt::format(

@@ -1,5 +1,5 @@
 #pragma once
-// What is seen of a case while it runs: a bar on a terminal, a line per frame in a log, lines of JSON, or nothing.
+// What the user sees of a case while it runs. It is a bar on a terminal, a line per frame in a log, lines of JSON, or nothing.
 #include <chrono>
 #include <ostream>
 #include <string>
@@ -17,9 +17,9 @@ public:
     /// So long pictures are expected to take after the end: what is left of a run counts them, too [s].
     void expect_after_the_end(double seconds) { after_the_end_ = seconds; }
     void begin(const Status& first, double end);
-    /// After begin(), when the run goes on from a kept state.
+    /// After begin(), when the run goes on from a saved state.
     void resumed(const Status& now);
-    /// After every step; the bar is redrawn at most five times a second, a line of JSON comes at most once.
+    /// After every step. The bar is redrawn at most five times a second, and a line of JSON comes at most once.
     void step(const Status& now);
     /// After every frame that was written.
     void output(Index number, const Status& now);

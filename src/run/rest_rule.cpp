@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMovingShare = 0.01;   ///< of the mass: what a deposit may change by
 constexpr double kHold = 0.05;          ///< of the time so far: how long all must be calm
-constexpr double kCheck = 0.1 * kHold;  ///< the same between looks
+constexpr double kCheck = 0.1 * kHold;  ///< the same between samples
 
 }  // namespace
 

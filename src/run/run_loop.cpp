@@ -144,13 +144,13 @@ RunSummary Loop::run() {
     return summary_;
 }
 
-/// One step, and the outputs on the way. Where the simulation knows its step it is shortened for the end only: what is
-/// looked at would change what happens.
+/// One step, and the outputs on the way. Where the simulation has its own step it is shortened for the end only.
+/// Otherwise observing would change what happens.
 void Loop::step_past_outputs() {
     double shown = time(), output_time = 0.0;
     do {  // a step may turn out shorter than it was said to be, and the next one pass more outputs
         if (own_steps()) shown = std::max(shown, show_outputs_aside());
-        if (own_steps() && interrupt_.requested()) return;  // outputs that the step would pass are left to who goes on
+        if (own_steps() && interrupt_.requested()) return;  // a resumed run shows those outputs
         output_time = next_output_time();
         advance(own_steps() ? plan_.end : output_time);
         show_step();
@@ -161,8 +161,8 @@ void Loop::step_past_outputs() {
     show_frame();
 }
 
-/// Goes to the outputs that the next step would pass, hits and shows them, and comes back to where it was. Returns the
-/// time of the last frame shown, or the present time. There may be thousands: an interrupt is heard after each.
+/// Goes to the outputs that the next step would pass, hits and shows them. Then it comes back to where it was. Returns
+/// the time of the last frame shown, or the present time. There may be thousands: an interrupt is heard after each.
 double Loop::show_outputs_aside() {
     const double past = std::min(time() + simulation_.longest_step(), plan_.end);
     if (!(next_output_time() < past)) return time();
@@ -250,7 +250,7 @@ void Loop::step(double until) {
     const double before = time();
     try {
         simulation_.advance(until);
-    } catch (const UserError& error) {  // of what a stage asks for on the way
+    } catch (const UserError& error) {  // of what a stage needs on the way
         throw Refusal(error);
     }
     const Status& now = simulation_.status();
@@ -300,7 +300,7 @@ Frame Loop::frame() {
     return result;
 }
 
-/// A frame between two outputs, for those who ask for one.
+/// A frame between two outputs, for observers that request one.
 void Loop::show_between() {
     std::vector<std::size_t> asking;
     for (std::size_t i = 0; i < observers_.size(); ++i)

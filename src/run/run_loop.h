@@ -1,5 +1,5 @@
 #pragma once
-// The time loop: advance, look, stop. It knows solvers and observers only by their abstract faces.
+// The time loop: advance, observe, stop. It uses solvers and observers only by their abstract faces.
 #include <exception>
 #include <memory>
 #include <string>
@@ -17,13 +17,13 @@ namespace frana {
 class Simulation;
 struct PhaseTime;
 
-/// When a run is looked at, and when it is over.
+/// When a run is observed, and when it is over.
 struct RunPlan {
     double end = 0.0;    ///< [s]
     double every = 1.0;  ///< frames at k * every [s], and one at the end
     bool stop_at_rest = false;
-    /// The case itself ends later. Steps that were shortened to hit this end are then not those of the whole run, so no
-    /// state is kept on the way from the last multiple of `every` to an end that is none.
+    /// The case itself ends later. Steps that were shortened to hit this end are then not those of the whole run. So no
+    /// state is saved on the way from the last multiple of `every` to an end that is none.
     bool cut_short = false;
     double cell = 1.0;            ///< of the terrain, for the rule of rest [m]
     double rest_fraction = 0.05;  ///< of the scene
@@ -31,8 +31,8 @@ struct RunPlan {
 
 /// What happened, for run.json and the report.
 struct RunSummary {
-    /// "end", "until" (its plan was cut short), "rest", "interrupted", "left" (no material remains), "numerics" (numbers that are not finite) or "refused"
-    /// (what a stage or a larger terrain asks for on the way)
+    /// "end", "until" (its plan was cut short), "rest", "interrupted", "left" (no material remains), "numerics"
+    /// (numbers that are not finite) or "refused" (what a stage or a larger terrain needs on the way)
     std::string reason;
     std::exception_ptr failure;  ///< the NumericsError, or of a refusal the UserError
     std::string failure_text;    ///< its message; says also when no last frame could be written
@@ -45,7 +45,7 @@ struct RunSummary {
     double particle_steps = 0.0;  ///< sum of the particles over the steps
     double wall_seconds = 0.0;
     std::vector<PhaseTime> solver;  ///< wall time by the solver's phases but "frame"
-    std::vector<PhaseTime> output;  ///< wall time by observer, "frame": gathering what they look at, "checkpoint"
+    std::vector<PhaseTime> output;  ///< wall time by observer, "frame": gathering what they read, "checkpoint"
     std::string started, ended;     ///< wall clock, UTC, ISO 8601
 
     /// The time that it was to run is over: all of it, or a part.
@@ -62,13 +62,13 @@ struct RunSummary {
 using Observers = std::vector<std::unique_ptr<Observer>>;
 
 /// Runs `simulation` from its present time to the plan's end. Observers' step() is called at the start and after
-/// every step; observe() at the start, at every k * every exactly and at the end; observe_between() in between, for
-/// those who ask for a frame; end() once, after the last observe(). An interruption finishes the step and ends the run
-/// as usual. A NumericsError ends it too, and so does a UserError in a step: if the state can still be shown it is the
-/// last frame; the error is kept in the summary for the caller to throw once the products are written. Errors of
-/// observers (a full disk) pass through. With a `keeper` the state of simulation, observers and summary is kept
-/// whenever that is due and once the run is over, before the last frame and end(): a run that is taken up again shows
-/// its own. If the keeper has a state, the run goes on from there and its summary tells of the whole run.
+/// every step. observe() is called at the start, at every k * every exactly and at the end. observe_between() is called
+/// in between for observers that request a frame, and end() once, after the last observe(). An interruption finishes
+/// the step and ends the run as usual. A NumericsError ends it too, and so does a UserError in a step. If the state can
+/// still be shown it is the last frame. The error is stored in the summary, and the caller throws it once the products
+/// are written. Errors of observers (a full disk) pass through. With a `keeper` the state of simulation, observers and
+/// summary is saved whenever that is due. It is also saved when the run is over, before last frame and end(): a resumed
+/// run shows its own. If the keeper has a state, the run goes on from there and its summary tells of the whole run.
 RunSummary run(Simulation& simulation, const RunPlan& plan, Observers& observers, const Interrupt& interrupt,
                Progress& progress, StateKeeper* keeper = nullptr);
 

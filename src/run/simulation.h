@@ -1,5 +1,5 @@
 #pragma once
-// The one abstract face of every solver: step, look, sample.
+// The one abstract face of every solver: step, observe, sample.
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,7 +22,7 @@ public:
     /// One time step, never past `until` [s]. Throws NumericsError when a number stops being finite.
     virtual void advance(double until) = 0;
     virtual const Status& status() const = 0;
-    /// Length at most of the next step, if it may be as long as it likes [s]; 0 where that is not known beforehand.
+    /// Length at most of the next step, if nothing limits it [s]. 0 where that is not known beforehand.
     virtual double longest_step() const { return 0.0; }
     /// What moves now: the same bits for any number of threads. `fastest` is the status's.
     virtual MovingMass motion(const MotionQuery& query) const = 0;
@@ -32,10 +32,10 @@ public:
     virtual bool more_comes() const { return false; }
     /// The state at status().time as named columns; borrowed until the next call of advance() or frame().
     virtual Frame frame() = 0;
-    /// The status of that frame, for those who need none of its fields. It too ends what a borrowed frame points to.
+    /// The status of that frame, for callers that need none of its fields. It too ends what a borrowed frame points to.
     virtual Status frame_status() { return frame().status; }
-    /// What the last frame's fields point into, for those who look at them longer than until the next step: they stay as
-    /// they are while somebody holds it. To be called before the next advance() or frame().
+    /// What the last frame's fields point into, for callers that read them longer than until the next step. They stay
+    /// as they are while somebody holds it. To be called before the next advance() or frame().
     virtual std::shared_ptr<const void> give_frame_away() = 0;
     /// Why material from outside cannot be added: what was found, expected, and what to do; empty: it can.
     virtual std::string why_not_add(const Seeds&) const {
@@ -47,17 +47,16 @@ public:
     virtual void add(const Seeds&) { throw InternalError("internal error: this model takes no material from outside"); }
     /// The ground that the run works on now, where that has grown beyond the scene's; frames lie within it.
     virtual const Raster* ground() const { return nullptr; }
-    /// Friction on that ground, where it differs in space.
+    /// Friction on that ground, where it varies spatially.
     virtual const Friction* friction() const { return nullptr; }
-    /// What the user should know of how the run was set up.
+    /// Remarks for the user on how the run was set up.
     virtual std::vector<std::string> remarks() const { return {}; }
     /// What only some models can tell.
     virtual Extras extras() const { return {}; }
     /// Wall time by phase since the start.
     virtual std::vector<PhaseTime> timings() const = 0;
-    /// Saves the state between two steps, or takes it up again with all its bits, in a simulation of the same scene
-    /// that was made for that (Start::resumed). Steps then go on as if they had never stopped, on any number of
-    /// threads.
+    /// Saves the state between two steps, or restores it with all its bits. The simulation is then of the same scene
+    /// and was made for that (Start::resumed). Steps then go on as if they had never stopped, on any number of threads.
     virtual void serialize(Archive& archive) = 0;
 };
 

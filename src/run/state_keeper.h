@@ -5,16 +5,16 @@
 
 namespace frana {
 
-/// Decides when the state of a run is kept and where it goes (run/folder/checkpoint.h writes files).
+/// Decides when the state of a run is saved and where it goes (run/folder/checkpoint.h writes files).
 class StateKeeper {
 public:
     using State = std::function<void(Archive&)>;
     virtual ~StateKeeper() = default;
-    /// Asked after every step: is it time?
+    /// Called after every step: whether it is time.
     virtual bool due() const = 0;
-    /// Takes the state in by calling `state`; a state that cannot be kept is the keeper's trouble and never the run's.
+    /// Saves the state by calling `state`. If that fails, the keeper notes it and the run goes on.
     virtual void save(double time, const State& state) = 0;
-    /// Gives the kept state to `state`; false when the run starts at its beginning. Throws UserError.
+    /// Gives the saved state to `state`; false when the run starts at its beginning. Throws UserError.
     virtual bool load(const State& state) = 0;
 };
 

@@ -8,7 +8,8 @@ namespace frana {
 /// cell sqrt(passes / 2)).
 Index smoothing_passes(const Scheme& scheme, double cell);
 
-/// Nodes around material that its steps depend on, and a step's way: so far it stays from the edge of a part.
+/// Width around material, in nodes, that its steps depend on, and the way of one step. Material stays so far from the
+/// edge of a part.
 Index clear_of_edge(const Scene& scene, double cell);
 
 }  // namespace frana

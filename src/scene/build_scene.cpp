@@ -92,8 +92,8 @@ private:
         remark_on_terrain(case_, scene_);
     }
 
-    /// The bed is a part of the terrain. Where elevations are missing it has to be all of it: what is outside of the terrain,
-    /// and what is a hole in it, is known of the whole only.
+    /// The bed is a part of the terrain. Where elevations are missing it has to be all of it. Only the whole shows what
+    /// is outside of the terrain, and what is a hole in it.
     void hold_part(WiderTerrain& wider) {
         if (!has_nodata(scene_.bed)) {
             wider.fields = fields_later(case_, reader_, wider.grid);
@@ -130,8 +130,8 @@ private:
         });
     }
 
-    /// Of all that the scene now holds. How much of the release is ever in the window of a stage at once is not known:
-    /// what would not fit with a tenth of it is refused, what would not fit with all of it is a remark.
+    /// Of all that the scene now holds. How much of the release is ever in the window of a stage at once is not known.
+    /// What would not fit with a tenth of it is refused. What would not fit with all of it is a remark.
     void require_room_for_all() {
         const MemoryNeed need = memory_need(scene_);
         const double free = free_memory(), without = need.total() - need.space;
@@ -278,8 +278,8 @@ private:
         for (LateRelease& late : scene_.late) late.first_id = id, id += late.seeds.count();
     }
 
-    /// One release up to one level, at rest, over the whole window or within an outline that holds its shore: a lake,
-    /// which the solver starts at exact rest.
+    /// One release up to one level, at rest, over the whole window or within an outline that holds its shore. It is a
+    /// lake, which the solver starts at exact rest.
     void note_lake() {
         const auto given = [&](const char* key) { return case_.given(std::string("release.0.") + key); };
         if (case_.count("release") != 1 || !given("surface") || case_.is_text("release.0.surface")) return;

@@ -31,9 +31,9 @@ struct BuiltScene {
 /// "12300 m2, mu 0.12, xi 300 to 500 m/s^2".
 std::string friction_sentence(const FrictionPart& part);
 
-/// Reads the terrain and the releases through `reader`, barriers of any shape through `meshes`, makes the
-/// particles, and checks all of it: outlines that leave the terrain, releases without volume, nodata within three
-/// cells of material. Throws one UserError with every problem found.
+/// Reads the terrain and the releases through `reader`, barriers of any shape through `meshes`, and makes the
+/// particles. Checks all of it: outlines that leave the terrain, releases without volume, nodata within three cells of
+/// material. Throws one UserError with every problem found.
 BuiltScene build_scene_in_detail(const CaseFile& file, const GisReader& reader, const MeshReader& meshes = {});
 
 /// The same without the summaries.

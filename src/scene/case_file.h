@@ -1,6 +1,6 @@
 #pragma once
-// A case file, read and checked key by key against the parameter table (scene/parameters.h). What comes out
-// are plain values in SI, each with the place it came from; scene/build_scene.h makes a Scene of them.
+// A case file, read and checked key by key against the parameter table (scene/parameters.h). The results are plain
+// values in SI, each with the place it came from. scene/build_scene.h makes a Scene of them.
 #include <filesystem>
 #include <map>
 #include <string>
@@ -28,7 +28,7 @@ public:
     /// files.
     static CaseFile read(const std::filesystem::path& file, const std::vector<std::string>& sets = {});
     /// The same from a text; `file` gives messages their name and relative paths their folder. Files that the
-    /// case names are not looked for.
+    /// case names need not exist.
     static CaseFile parse(const std::string& text, const std::filesystem::path& file,
                           const std::vector<std::string>& sets = {});
 
@@ -61,7 +61,7 @@ public:
     /// A path as it is to be opened: relative ones from the case file's folder, GDAL's virtual names
     /// untouched.
     std::filesystem::path resolve(const std::string& path) const;
-    /// Every file that the given keys name, as it is to be opened, beside its key. A key may name several.
+    /// Every file that the given keys name, as it is to be opened, with its key. A key may name several.
     std::vector<std::pair<std::string, std::filesystem::path>> named_files() const;
     /// The case file, then those: what the case reads.
     std::vector<std::filesystem::path> inputs() const;

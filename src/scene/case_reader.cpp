@@ -60,8 +60,8 @@ std::vector<std::string> table_names() {
     return names;
 }
 
-/// The key that was meant by an unknown one: a neighbour in its table, the same name in another table, the
-/// nearest of all keys and tables. Empty when none is near.
+/// The key that was meant by an unknown one. It is a neighbour in its table, the same name elsewhere, or the nearest of
+/// all keys and tables. Empty when none is near.
 std::string meant(const std::string& key) {
     const std::string table = table_of(key);
     const std::string name = table.empty() ? key : key.substr(table.size() + 1);
@@ -106,7 +106,8 @@ bool takes_text(Kind kind) {
     return kind == Kind::text || kind == Kind::name || kind == Kind::choice || kind == Kind::path;
 }
 
-/// The value of a --set: a TOML value where it is one, a number that TOML would write otherwise (.5, 2.), or the text itself.
+/// The value of a --set. It is a TOML value where it is one, or a number that TOML would write otherwise (.5, 2.). Else
+/// it is the text itself.
 toml::table set_table(const std::string& text, Kind kind) {
     toml::table table;
     try {  // toml++ reports by exception whether a text is TOML; here that is a question, not an error
@@ -225,8 +226,8 @@ void CaseReader::apply_set(const std::string& argument) {
     displace(*parameter, key);
 }
 
-/// That the number of a repeated table in a --set key exists or is the next one, which it then adds; and that
-/// other keys carry no number.
+/// Checks that the number of a repeated table in a --set key exists or is the next one. That one it adds. Other keys
+/// carry no number.
 bool CaseReader::count_repeated(const std::string& key, const std::string& place) {
     const std::string table = repeated_table_of(key);
     const std::string plain = without_numbers(key);
@@ -250,8 +251,8 @@ bool CaseReader::count_repeated(const std::string& key, const std::string& place
     return true;
 }
 
-/// A --set replaces what the file says in another way: mu for friction_angle_deg, and the parameters of a law
-/// that --set exchanges for another. Each displaced key is remarked upon.
+/// A --set replaces what the file says in another way: mu for friction_angle_deg. It also replaces the parameters of a
+/// law that --set exchanges for another. Each displaced key is remarked upon.
 void CaseReader::displace(const Parameter& parameter, const std::string& key) {
     const std::string prefix = key.substr(0, key.rfind('.') + 1);
     if (!parameter.instead_of.empty()) {

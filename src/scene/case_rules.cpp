@@ -459,8 +459,7 @@ void CaseReader::check_files() {
     for (const auto& [key, setting] : case_.settings_) {
         for (const std::string& file : files_of(*find_parameter(key), setting.value)) {
             const std::filesystem::path path = case_.resolve(split_layer(file).file);
-            // Names such as /vsizip/a.zip/dem.tif or NETCDF:a.nc:z are GDAL's own; only GDAL can look for
-            // them.
+            // Names such as /vsizip/a.zip/dem.tif or NETCDF:a.nc:z are GDAL's own; only GDAL can find them.
             const bool virtual_name = file.rfind("/vsi", 0) == 0 || file.find(':') != std::string::npos;
             std::error_code unknown;
             const std::filesystem::file_status status = std::filesystem::status(path, unknown);

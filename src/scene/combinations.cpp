@@ -90,7 +90,7 @@ void add_scheme_of(std::vector<Combination>& table, const OtherModel& model) {
     unused({"scheme.stress_cap", Are::given}, "none: " + model.who + " has no rheology");
 }
 
-/// What the depth-averaged flow alone knows of: neither structured columns nor free water do.
+/// What only the depth-averaged flow has: neither structured columns nor free water do.
 void add_structure(std::vector<Combination>& table) {
     const Values structure = is_not("material.structure.law", {"none"}), free = is("water.model", {"free"});
     const std::vector<Values> either = {structure, free};
@@ -165,7 +165,7 @@ void add_water_alone(std::vector<Combination>& table) {
     add_scheme_of(table, water);
 }
 
-/// What free water, and water within a structure, do not know of.
+/// What free water, and water within a structure, do not have.
 void add_water(std::vector<Combination>& table) {
     const Values free = is("water.model", {"free"});
     table.push_back({{"barrier", Are::tables},
@@ -269,7 +269,7 @@ void add_forest(std::vector<Combination>& table) {
                      "remove the stage, or the forest"});
 }
 
-/// What the schemes of the depth-averaged flow do not know of.
+/// What the schemes of the depth-averaged flow do not have.
 void add_schemes(std::vector<Combination>& table) {
     const Values paper = is("scheme.preset", {"paper"});
     table.push_back({is_not("terrain.curvature", {"none"}),
@@ -296,7 +296,7 @@ void add_schemes(std::vector<Combination>& table) {
          " with another preset, shape or transfer than the default"});
 }
 
-/// What runs that go into space do not know of.
+/// What runs with a 3D stage do not have.
 void add_space(std::vector<Combination>& table) {
     table.push_back({{"inflow", Are::tables},
                      {{"stage", Are::tables}},

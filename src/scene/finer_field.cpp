@@ -47,7 +47,7 @@ Raster finer_field(const Raster& field, double cell) {
                 depth = between(field, i, j, place(a), place(b));
                 sum += depth;
             });
-            const double keep = field.at(i, j) * double(parts * parts) / sum;  // the pixel keeps its volume
+            const double keep = field.at(i, j) * double(parts * parts) / sum;  // the pixel's volume stays the same
             each([&](Index, Index, double& depth) { depth *= keep; });
         }
     return result;

@@ -6,8 +6,8 @@
 
 namespace frana {
 
-/// The particle nearest to the middle of all. Where a scene has none, the middle of a lake of water alone or of the first
-/// inflow; of an area its patch nearest to it. Nothing where nothing flows.
+/// The particle nearest to the middle of all. Where a scene has none, the middle of a lake of water alone, or of the
+/// first inflow. Of an area, its patch nearest to its middle. Nothing where nothing flows.
 std::optional<Vec2> flow_start(const Scene& scene);
 
 /// The same where nothing lies on the terrain at the start, nothing otherwise: then a run's rasters tell.

@@ -1,5 +1,5 @@
 #pragma once
-// Classes of ground that tables of snow's friction know: flat or convex, open slope, channelled, gully.
+// Classes of ground in tables of snow's friction: flat or convex, open slope, channelled, gully.
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -16,12 +16,12 @@ struct GroundBorders {
     std::array<double, 3> curvature{-0.002, 0.002, 0.01};
 };
 
-/// Mean of a raster over squares of about that side, row by row and column by column. A node takes part with its mirror
-/// node only, so that a plane stays what it is up to its edges and to nodata.
+/// Mean of a raster over squares of about that side, row by row and column by column. A node counts only together with
+/// its mirror node. So a plane stays what it is up to its edges and to nodata.
 Raster smoothed(const Raster& raster, double length);
 
-/// Curvature of the contour at a node, positive where it is hollow towards the valley: a contour of radius R has 1/R [1/m];
-/// 0 where the ground is level or a neighbour has no elevation.
+/// Curvature of the contour at a node, positive where it is hollow towards the valley. For radius R it is 1/R [1/m]. 0
+/// where the ground is level or a neighbour has no elevation.
 double plan_curvature(const Raster& bed, Index i, Index j);
 
 /// The class of each node, as numbers of salm::ground_names. Nodes of the outer row have the class of the next one inside.

@@ -1,5 +1,6 @@
 #pragma once
-// What differs in space besides the elevations, read anew for another part of a large terrain: friction, loose material, trees.
+// What varies spatially besides the elevations, read anew for another part of a large terrain: friction, loose
+// material, trees.
 #include <functional>
 #include <memory>
 

@@ -5,7 +5,7 @@
 
 namespace frana {
 
-/// What people want to know of an inflow.
+/// Main figures of an inflow.
 struct InflowFacts {
     double volume = 0.0;                 ///< of the table [m3]
     double peak = 0.0, peak_time = 0.0;  ///< largest discharge [m3/s]; [s]

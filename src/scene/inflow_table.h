@@ -18,10 +18,10 @@ struct Hydrograph {
     double volume() const;  ///< [m3]
 };
 
-/// Reads a CSV (comma, semicolon or blanks) whose header names columns and units: t [s] or t_min or t_h, discharge [m3/s]
-/// and, if there is one, velocity [m/s]. Also rows of r.avaflow, without units: t, Q and v of one to three phases, under a
-/// header T, Q1, v1, ... or without one; their discharges are summed, and the velocity is the mean of what flows, with a
-/// remark. Throws UserError with line, what was found and what is expected.
+/// Reads a CSV (comma, semicolon or blanks) whose header names columns and units. These are t [s] or t_min or t_h,
+/// discharge [m3/s] and, if there is one, velocity [m/s]. Also reads rows of r.avaflow, without units: t, Q and v of
+/// one to three phases. They stand under a header T, Q1, v1, ... or without one. Their discharges are summed, and the
+/// velocity is the mean of what flows, with a remark. Throws UserError with line, what was found and what is expected.
 Hydrograph read_hydrograph(const std::filesystem::path& file);
 /// The same from the table's text.
 Hydrograph parse_hydrograph(const std::string& text, const std::string& source);

@@ -1,5 +1,5 @@
 #pragma once
-// What is looked at inside the solver process while a case runs: plain data, as [[insitu]] and [[camera]] give it.
+// What is observed inside the solver process while a case runs: plain data, as [[insitu]] and [[camera]] give it.
 #include <array>
 #include <filesystem>
 #include <optional>

@@ -32,8 +32,8 @@ public:
     /// Throws UserError unless every node of the ground has all parameters, and they go together.
     virtual void check() const = 0;
     virtual const LawPlace& place() const = 0;
-    /// The laws to where they belong, their mean to the scene, the keys of what differs; beyond the ground, where nothing is
-    /// known and nothing moves, nodes get the mean.
+    /// Stores the laws where they belong, their mean in the scene, and the keys of what differs. Beyond the ground
+    /// nothing is known and nothing moves, and nodes get the mean.
     virtual void finish(Friction& friction) = 0;
     /// What the nodes of the ground have that are marked with a number, for each parameter that differs somewhere.
     virtual void add_extents(const std::vector<std::uint32_t>& part, std::uint32_t number, FrictionPart& to) const = 0;

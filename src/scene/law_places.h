@@ -1,5 +1,5 @@
 #pragma once
-// Laws whose numbers may differ in space: where a case says them, and what its zones call them.
+// Laws whose numbers may vary spatially: where a case gives them, and what its zones call them.
 #include <array>
 #include <optional>
 #include <string>

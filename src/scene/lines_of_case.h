@@ -7,7 +7,7 @@
 
 namespace frana {
 
-/// A key that holds points, or names a vector file of one line, which is brought to `crs_wkt`; points on one another are
+/// A key that holds points, or names a vector file of one line, which is brought to `crs_wkt`. Coincident points are
 /// dropped. Throws UserError; remarks go to `log`.
 Polyline read_line(const CaseFile& file, const std::string& key, const GisReader& reader, const std::string& crs_wkt,
                    std::vector<std::string>& log);

@@ -17,11 +17,11 @@ struct Rates {
 /// From 36 runs of the case `bindo` (cells of 1.5 to 4 m, 20 000 to 400 000 particles).
 constexpr Rates solver_rates{85e6, 315.0, 431.0};
 constexpr Rates vtk_rates{4e6, 240.0, 388.0};  ///< besides, for VTK's frames: the grid or the particles
-/// Of columns on a part of a terrain: most of its nodes are never reached or shown, and have a bed only. From two runs
-/// on parts of 2.7 and 34 million nodes.
+/// On a part of a terrain most nodes are never reached or shown, and have a bed only. From two runs on parts of 2.7 and
+/// 34 million nodes.
 constexpr double part_node_rate = 160.0;
-/// Besides, for each node of solids that hold together, and of free water (4 million nodes); with how the bed bends, five numbers
-/// and three: 1630 and 2440 MB in all.
+/// Besides, for each node of solids that hold together, and of free water (4 million nodes). With the bed's curvature,
+/// five numbers and three: 1630 and 2440 MB in all.
 constexpr double structure_rate = 75.0, water_rate = 200.0;
 /// Likewise of an erodible bed: seven numbers with its depth, two more where the bed's smoothing follows.
 constexpr double erodible_rate = 56.0, path_rate = 16.0, deposition_rate = 16.0, forest_rate = 16.0, raised_rate = 8.0;

@@ -1,5 +1,5 @@
 #pragma once
-// What a run asks of the system's memory, told before it is asked for.
+// How much memory a run needs, told before it is allocated.
 #include <string>
 
 #include "scene/scene.h"
@@ -19,7 +19,7 @@ struct MemoryNeed {
 MemoryNeed memory_need(double nodes, double particles, bool vtk);
 /// Of the nodes of a part of a terrain (scene/terrain_part.h), most of which are never reached [bytes].
 double memory_of_part(double nodes);
-/// Besides, of what a scene has on so many nodes: loose material, forest, friction in space [bytes].
+/// The same for what a scene has besides on so many nodes: loose material, forest, spatially varying friction [bytes].
 double memory_of_fields(const Scene& scene, double nodes);
 /// Of a scene that is built.
 MemoryNeed memory_need(const Scene& scene);
@@ -28,7 +28,7 @@ MemoryNeed memory_need(const Scene& scene);
 double most_points(const Scene& scene);
 constexpr double bytes_per_point = 450.0;  ///< of 3D points
 
-/// A key of the case with what it asks for, and what would ask for less.
+/// A key of the case with what it needs, and what would need less.
 struct MemoryUse {
     std::string place, what, way_out;
 };

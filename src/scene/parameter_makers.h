@@ -119,7 +119,7 @@ inline Parameter with(Parameter parameter, const char* key, std::vector<std::str
     return parameter;
 }
 
-/// The numbers of laws that may differ in space, each a number or a raster: laws bring their own keys.
+/// The numbers of laws that may vary spatially, each a number or a raster. Laws bring their own keys.
 template <class Law>
 void add_numbers(Table& table, const LawPlace& place) {
     for (const laws::SharedKey& key : laws::Catalogue<Law>::keys()) {

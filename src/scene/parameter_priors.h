@@ -1,5 +1,5 @@
 #pragma once
-// How likely values of a key are where nothing but the kind of mass is known: what an ensemble takes that gives no range.
+// Distributions of a key's values where only the kind of mass is known. An ensemble that gives no range takes them.
 #include <optional>
 #include <string>
 #include <vector>

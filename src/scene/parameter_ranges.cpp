@@ -1,4 +1,4 @@
-// The table itself, and what is looked up in it.
+// The table itself, and how values are found in it.
 #include "scene/parameter_ranges.h"
 
 #include <algorithm>

@@ -30,7 +30,7 @@ const std::vector<ParameterRange>& parameter_ranges();
 struct Plausible {
     double low = 0.0, high = 0.0;
 };
-/// From the lowest to the highest of the rows of a kind, a key and a bed law; nothing without a row.
+/// From the lowest to the highest value in the rows of a kind, a key and a bed law. Nothing without a row.
 std::optional<Plausible> plausible(const std::string& kind, const std::string& key, const std::string& law);
 
 /// The key of the table that tells of a case key, and how its values become the case key's.

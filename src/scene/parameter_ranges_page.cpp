@@ -65,7 +65,7 @@ std::string salm_header() {
     return text + "\n|---|---|---|---|---|";
 }
 
-/// Largest avalanches and longest return periods first, as the source's readers know it.
+/// Largest avalanches and longest return periods first, as in the source.
 std::string salm_tables() {
     std::string text = "| xi [m/s2] |" + salm_header() + "\n";
     for (std::size_t size = salm::xi.size(); size-- > 0;) {

@@ -1,4 +1,4 @@
-// The keys of what is looked at while the case runs: [[insitu]] and the [[camera]]s of its pictures.
+// The keys of what is observed while the case runs: [[insitu]] and the [[camera]]s of its pictures.
 #include "scene/parameter_makers.h"
 
 namespace frana {

@@ -1,5 +1,5 @@
-// The keys of [[barrier]]; and of [[stage]]: which model carries the material until when, and how the one in
-// space is set up.
+// The keys of [[barrier]] and of [[stage]]. A stage says which model carries the material until when, and how the 3D
+// one is set up.
 #include "scene/parameter_makers.h"
 
 namespace frana {

@@ -1,4 +1,4 @@
-// The keys of [water]: free water, beside solids that hold together or alone.
+// The keys of [water]: free water, together with solids that hold together or alone.
 #include "law/free_water.h"
 #include "law/water_friction.h"
 #include "scene/parameter_makers.h"

@@ -1,6 +1,6 @@
 #pragma once
-// Everything that is wrong with a case, gathered before anything is thrown, so that one run of `frana check`
-// shows all of it.
+// Everything that is wrong with a case, gathered before anything is thrown. So one run of `frana check` shows all of
+// it.
 #include <string>
 #include <vector>
 

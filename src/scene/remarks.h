@@ -38,14 +38,14 @@ struct RemarkRow {
 
 const std::vector<RemarkRow>& remark_table();
 
-/// What was found, beside the number that the table judges.
+/// What was found, together with the number that the table judges.
 struct Found {
     double value = std::numeric_limits<double>::quiet_NaN();
     double other = 0.0;
     std::string what = {};
 };
 
-/// Appends "place: what was found; what is expected; what to do" to `log`, unless the value lies within the row's
+/// Appends "place: what was found; what is expected; what to do" to `log`. Nothing if the value is within the row's
 /// limits.
 void remark_on(std::vector<std::string>& log, Remark remark, const std::string& place, const Found& found);
 /// The same of the holes of a terrain, when it has any: walls, or open.

@@ -23,7 +23,7 @@ inline constexpr std::size_t tiny = 0, channelled = 2, hundred_years = 2;  ///< 
 /// Source of both tables: fric_coeffs_RAMMS_10-300y.txt of the raster tool of the Norwegian Geotechnical Institute
 /// (github.com/norwegian-geotechnical-institute/Avaframe-Workshop, MIT licence). It has mu and k = g/xi; xi here is
 /// 9.81/k, rounded to 50. Values belong to RAMMS, the model that they were fitted with. Two slips of that file are
-/// mended here:
+/// mended here.
 /// - medium, channelled, 10 and 300 years: two altitudes' k are exchanged; xi is that of 30 and 100 years;
 /// - tiny, channelled, 100 years: mu .310/.295/.280 there, below that of 300 years. Here it is interpolated in the
 ///   logarithm of the period between 30 and 300 years, rounded to 0.005.

@@ -27,7 +27,7 @@
 namespace frana {
 
 /// shallow: gentle slopes (Fois et al. 2024). steep: exact on any slope, lakes rest. linearised: steep to first order in
-/// the depth gradient, which is Savage and Hutter's slope-normal theory in map coordinates; lakes do not rest.
+/// the depth gradient, so lakes do not rest. This is Savage and Hutter's slope-normal theory in map coordinates.
 enum class TerrainModel { shallow, steep, linearised };
 enum class Curvature { none, inertia, full };
 enum class Sides { open, wall };
@@ -85,8 +85,8 @@ struct Section {
     bool to_right = true;  ///< what goes from its left to its right counts as positive; otherwise the other way
 };
 
-/// Material that comes in through a line, or at rest over an area; water where there is free water. Between the times of its table all is linear, before and
-/// after it nothing comes.
+/// Material that comes in through a line, or at rest over an area; water where there is free water. Between the times
+/// of its table all is linear, before and after it nothing comes.
 struct Inflow {
     /// A patch of the area.
     struct Patch {
@@ -136,8 +136,8 @@ struct LateRelease {
     }
 };
 
-/// From a time on, the material in a window of the map is 3D points (solid3d/mpm3d.h); what flows into the
-/// window later becomes points as it crosses the edge, and what flows out of it columns.
+/// From a time on, the material in a window of the map is 3D points (solid3d/mpm3d.h). What flows into the window later
+/// becomes 3D points as it crosses the edge. What flows out of it becomes particles.
 struct SolidStage {
     double from = 0.0;                   ///< [s]
     std::optional<double> until;         ///< from then on all are columns again [s]; nothing: to the end
@@ -169,7 +169,7 @@ struct Barrier {
     std::shared_ptr<const DistanceField> shape;  ///< when it was given as a mesh: nothing below but hold and friction
     Polygons outline;                            ///< no parts with a line
     Polyline line;                               ///< foot of the face that material comes to
-    bool wet_left = true;                        ///< that face is on the left as one walks along the line
+    bool wet_left = true;                        ///< that face is on the left, seen along the line
     std::optional<double> thickness;  ///< of a wall along a line [m]; nothing: as little as the model can hold apart
     std::optional<double> top;        ///< elevation of a level top [m]
     double height = 0.0;              ///< above the bed, which the top then follows [m]
@@ -186,12 +186,15 @@ struct Structure {
     double confined = 0.0;     ///< share of the volume that is water within the structure [1]
     double cfl = 0.4;          ///< fraction of a cell that sound and flow may pass in a step [1]
     bool unrolled = false;     ///< coordinates are measured along the ground, not on the map
-    bool hydrostatic = false;  ///< grains push sideways as they do down, K = 1; otherwise by Rankine's Ka to Kp
+    bool hydrostatic = false;  ///< horizontal pressure of grains equals the vertical one, K = 1; otherwise by Rankine's
+                               ///< Ka to Kp
 };
 
-/// Free water on the grid: beside the columns of a structure (coupling/two_phase_flow.h), or alone, of the releases too.
+/// Free water on the grid, together with the columns of a structure (coupling/two_phase_flow.h) or alone. Releases may
+/// be of it too.
 struct WaterPhase {
-    /// What is beyond a side of the terrain: what Scene::sides says, a wall, nothing that comes in, or water at a level.
+    /// What is beyond a side of the terrain. It is what Scene::sides says, a wall, nothing that comes in, or water at a
+    /// level.
     struct Side {
         enum class Is { as_sides, wall, free, level } is = Is::as_sides;
         double level = 0.0;  ///< [m]
@@ -227,7 +230,7 @@ struct Forest {
     Detrainment law;
 };
 
-/// Where one part of a friction holds that differs in space, and what it has there.
+/// Where one part of a spatially varying friction holds, and what it has there.
 struct FrictionPart {
     struct Extent {
         std::string key, unit;
@@ -238,8 +241,8 @@ struct FrictionPart {
     std::vector<Extent> extents;  ///< of each parameter that differs somewhere
 };
 
-/// Friction that differs in space: bed laws, rheologies and what brakes free water (shallow/THEORY.md, section 19), on the
-/// nodes of the bed. A map without nodes: one law everywhere, the scene's.
+/// Spatially varying friction: bed laws, rheologies and what brakes free water, on the nodes of the bed
+/// (shallow/THEORY.md, section 19). A map without nodes: one law everywhere, the scene's.
 struct Friction {
     bed::LawMap laws;                 ///< of the bed
     std::vector<std::string> keys;    ///< of the parameters that differ, as zones name them: "mu", "rheology.viscosity"
@@ -260,14 +263,14 @@ struct Output {
     double checkpoint_minutes = 10.0;  ///< of wall time between checkpoints; 0: one at the end of the run [min]
 };
 
-/// What differs in space on the nodes of a terrain besides its elevations; empty where a scene has none of it.
+/// What varies spatially on the nodes of a terrain besides its elevations. Empty where a scene has none of it.
 struct GroundFields {
     std::shared_ptr<const Friction> friction;
     Raster loose;  ///< ErodibleBed::depth [m]
     Raster trees;  ///< Forest::pressure [Pa]
 };
 
-/// A terrain of which a scene holds a part, and where more of it comes from as the flow goes on.
+/// A terrain of which a scene holds a part. It also says where more of it comes from as the flow goes on.
 struct WiderTerrain {
     GridGeometry grid;                           ///< all of its nodes
     NodeBox held;                                ///< the scene's bed, of these nodes
@@ -278,7 +281,7 @@ struct WiderTerrain {
 };
 
 struct Scene {
-    // In a file of their own: made anew in every file that has a scene, they take a quarter of its compile time.
+    // In a file of their own. Made anew in every file that has a scene, they take a quarter of its compile time.
     Scene();
     Scene(const Scene&);
     Scene(Scene&&) noexcept;
@@ -298,16 +301,15 @@ struct Scene {
     TerrainModel terrain = TerrainModel::steep;
     Curvature curvature = Curvature::full;
     Sides sides = Sides::open;
-    Holes holes;  ///< of the bed, surrounded by terrain
-    std::optional<double>
-        hole_top;  ///< of walls there, above the ground beside them [m]; nothing: material leaves there
+    Holes holes;                     ///< of the bed, surrounded by terrain
+    std::optional<double> hole_top;  ///< of walls there, above the adjacent ground [m]; nothing: material leaves there
 
     Seeds particles;                           ///< material at the start
     std::vector<Inflow> inflows;               ///< material that comes in later
     std::vector<LateRelease> late;             ///< likewise, all of a release at once
-    std::optional<double> still_surface;       ///< level of a release given as one horizontal surface at rest [m]: the
+    std::optional<double> still_surface;       ///< level of a release given as one horizontal surface at rest [m]. The
                                                ///< points' masses are then fitted so that it starts at exact rest
-    BedLaw bed_law;                            ///< its mean where friction differs in space
+    BedLaw bed_law;                            ///< its mean where friction varies spatially
     std::shared_ptr<const Friction> friction;  ///< nothing: the same everywhere
     Rheology rheology;                         ///< likewise its mean
     Scheme scheme;
@@ -319,11 +321,11 @@ struct Scene {
     std::vector<Profile> profiles;
     std::vector<Gauge> gauges;
     std::vector<Section> sections;
-    std::vector<Insitu> insitu;      ///< looked at while the case runs
+    std::vector<Insitu> insitu;      ///< observed while the case runs
     std::optional<Polygons> survey;  ///< surveyed footprint, to compare with
     std::vector<Barrier> barriers;
     std::optional<Structure> structure;    ///< when the material holds together
-    std::optional<WaterPhase> water;       ///< beside a structure, or alone
+    std::optional<WaterPhase> water;       ///< together with a structure, or alone
     std::optional<ErodibleBed> erodible;   ///< nothing: the bed is rock
     std::optional<Deposition> deposition;  ///< nothing: none
     std::optional<Forest> forest;          ///< nothing: no trees take mass out
@@ -356,7 +358,7 @@ private:
 
 /// The bed law of the node nearest to a place.
 BedLaw bed_law_at(const Scene& scene, const Vec2& place);
-/// What brakes free water there, where that differs in space; else `everywhere`.
+/// What brakes free water there, where that varies spatially; else `everywhere`.
 WaterFriction water_friction_at(const Scene& scene, const Vec2& place, const WaterFriction& everywhere);
 
 }  // namespace frana

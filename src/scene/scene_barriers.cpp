@@ -209,7 +209,8 @@ private:
         return read;
     }
 
-    /// Two nodes a cell hold edges to a quarter of it; the field reaches as far as images do, in any direction.
+    /// Two nodes a cell resolve edges to a quarter of it. The field reaches as far as mirror particles do, in any
+    /// direction.
     bool read_mesh(Barrier& barrier, std::vector<Vec2>& vertices) {
         const double cell = scene_.solid ? scene_.solid->cell : scene_.bed.geometry.cell;
         return problems_.attempt(place(), [&] {

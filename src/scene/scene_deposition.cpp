@@ -8,7 +8,8 @@
 namespace frana {
 namespace {
 
-/// Whether the bed law, somewhere, stops what hardly moves; a lake at rest over one that does not is no deposit.
+/// Whether the bed law, somewhere, stops material that hardly moves. A lake at rest over one that does not is no
+/// deposit.
 bool holds_a_push(const Scene& scene) {
     const BedState state{scene.gravity, 1.0, 1.0, 1.0, scene.gravity, scene.density};
     const auto holds = [&](const auto& law) { return law.speed_after(state, 0.0, 1e-9, 1.0) == 0.0; };

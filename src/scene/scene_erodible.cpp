@@ -70,7 +70,7 @@ void remark_on_outline(const CaseFile& file, const Polygons& outline, double sha
         g.x0 + low.x(), g.x0 + high.x(), g.y0 + low.y(), g.y0 + high.y(), g.x0, g.x_max(), g.y0, g.y_max()));
 }
 
-/// Each node keeps what part of its pixel the outline covers.
+/// Each node gets the part of its pixel's depth that the outline covers.
 void keep_inside(const CaseFile& file, const GisReader& reader, Scene& scene, Raster& depth) {
     const Polygons outline = reader.read_polygons(file.path("erodible.outline"), scene.bed.crs_wkt, scene.log);
     const GridGeometry& g = depth.geometry;
@@ -97,7 +97,7 @@ void keep_inside(const CaseFile& file, const GisReader& reader, Scene& scene, Ra
     remark_on_outline(file, outline, inside / all, scene);
 }
 
-/// What looks like a mistake.
+/// What seems to be a mistake.
 void remark_on_depth(const CaseFile& file, const Raster& depth, Scene& scene) {
     constexpr double kDeep = 50.0;  // [m]
     const double deepest = *std::max_element(depth.values.begin(), depth.values.end());
@@ -112,7 +112,7 @@ void remark_on_depth(const CaseFile& file, const Raster& depth, Scene& scene) {
                                     scene.barriers.empty() ? "" : "; what barriers stand on is counted, but stays"));
 }
 
-/// Laws that know the flow's speed or depth alone let short waves of bed and flow grow near a Froude number of 1
+/// Some laws depend only on the flow's speed or depth. They let short waves of bed and flow grow near a Froude number of 1
 /// (checks/verify/README.md, "Waves on a flow that takes up its bed").
 void remark_on_waves(const CaseFile& file, const ErodibleBed& bed, Scene& scene) {
     constexpr double kViscosity = 0.03;  // of density, depth and speed: measured there

@@ -116,7 +116,8 @@ bool holds_shore(const Release& release, const Raster& bed, double level) {
     NodeMarks outside(inside.size(), 0);
     for (std::size_t k = 0; k < inside.size(); ++k) outside[k] = !inside[k];
     const NodeMarks within = widened(outside, grid, 1);
-    for (std::size_t k = 0; k < inside.size(); ++k)  // the rim: nodes of either side that have a neighbour on the other
+    for (std::size_t k = 0; k < inside.size(); ++k)  // the edge: nodes of either side that have a neighbour on the
+                                                     // other
         if (around[k] && within[k] && !(bed.values[k] >= level)) return false;
     return true;
 }
@@ -147,8 +148,7 @@ void refuse_nodata(const NodeMarks& marks, const Raster& bed, Index reach) {
 }
 
 double cut_release(const Release& release, Raster& bed) {
-    // With 16 patches a cell the lattice fits into the pixels of the nodes, so the sums below are exact
-    // means.
+    // With 16 patches a cell the lattice fits into the pixels of the nodes. So the sums below are exact means.
     ParticleOptions options;
     options.per_cell = 16;
     std::vector<ReleaseReport> reports;
@@ -193,7 +193,7 @@ double bilinear(const Raster& raster, const Vec2& point) {
 Vec2 node_gradient(const Raster& raster, Index i, Index j) {
     const GridGeometry& grid = raster.geometry;
     if (i > 0 && j > 0 && i + 1 < grid.nx &&
-        j + 1 < grid.ny) {  // most nodes, at once: terrain is asked for all of them
+        j + 1 < grid.ny) {  // most nodes, at once: all of them may need the terrain
         const double west = raster.at(i - 1, j), east = raster.at(i + 1, j), south = raster.at(i, j - 1),
                      north = raster.at(i, j + 1), across = 2.0 * grid.cell;
         if (std::isfinite(west) && std::isfinite(east) && std::isfinite(south) && std::isfinite(north))

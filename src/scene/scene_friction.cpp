@@ -1,4 +1,4 @@
-// Friction that differs in space: rasters of the numbers of laws, classes of ground, and [[material.zone]].
+// Spatially varying friction: rasters of the numbers of laws, classes of ground, and [[material.zone]].
 #include <fmt/format.h>
 
 #include <algorithm>

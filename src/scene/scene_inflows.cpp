@@ -19,8 +19,9 @@ namespace {
 constexpr Index kReach = 6;         ///< cells; what holds the flow up behind the line takes so many
 constexpr Index kWaterReach = 0;    ///< free water comes in at the cells that the line crosses
 constexpr double kDeepest = 100.0;  ///< more than so much on all of the terrain is a mistake [m]
-/// Over an area a row is complete when so much has come, in cells: the step at the area's edge then hardly pushes, and a
-/// point is no crumb. A slow source, whose whole depth is little more, comes in as so many layers at least.
+/// Over an area a row is complete when so much has come, in cells. The step at the area's edge then has hardly any
+/// pressure, and a point is no crumb. A slow source, whose whole depth is little more, comes in as so many layers at
+/// least.
 constexpr double kLayer = 0.01, kFewestLayers = 50.0;
 constexpr Index kParts = 16;        ///< of an interval of the table, where speeds follow from the discharge
 constexpr Index kMostParts = 4000;  ///< of all
@@ -260,7 +261,7 @@ private:
                             100.0 * up / all));
     }
 
-    /// Means over a line of how the ground slopes: across it, of both senses; along it; and from it to both sides.
+    /// Mean slopes of the ground over a line: across it, of both senses; along it; from it to both sides.
     struct Slopes {
         double across = 0.0, along = 0.0, off = 0.0;  ///< [1]
     };
@@ -381,8 +382,8 @@ private:
         inflow_.time = std::move(time), inflow_.discharge = std::move(discharge);
     }
 
-    /// What holds the flow at an even speed. Water's friction is a bed law: Darcy and Weisbach's is Voellmy's drag alone, with
-    /// xi = 8 g / f.
+    /// What holds the flow at an even speed. Water's friction is a bed law: Darcy and Weisbach's is Voellmy's drag
+    /// alone, with xi = 8 g / f.
     BedLaw law() const {
         if (!water_ || case_.word("material.bed.law") != "none") return bed_law_at(scene_, inflow_.middle());
         const WaterFriction of = water_friction_at(scene_, inflow_.middle(), water_friction(case_));

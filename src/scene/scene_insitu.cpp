@@ -103,7 +103,7 @@ private:
         for (const std::string& field : entry.fields) check_field(key, field, entry.of_particles);
     }
 
-    /// That the run will have this field where it is looked for.
+    /// Checks that the run will have this field where it is observed.
     void check_field(const std::string& key, const std::string& field, bool of_particles) {
         const bool stress = starts_with(field, "stress") || starts_with(field, "effective_stress");
         const bool water = starts_with(field, "water_");

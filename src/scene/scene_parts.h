@@ -26,16 +26,16 @@ bool friction_by_table(const CaseFile& file);
 std::vector<std::string> rasters_of_laws(const CaseFile& file);
 /// Whether the case has such a table, zones of friction or rasters of it.
 bool friction_differs(const CaseFile& file);
-/// The table (`released` [m3] tells the class of size), rasters of laws' numbers, and all [[material.zone]], of a
-/// scene that has its terrain and its laws. What is wrong with them goes to `problems`, remarks to the scene's log. Where
-/// nothing differs in space nothing happens.
+/// Reads the table (`released` [m3] tells the class of size), rasters of laws' numbers, and all [[material.zone]]. The
+/// scene has its terrain and its laws. What is wrong with them goes to `problems`, remarks to the scene's log. Where
+/// nothing varies spatially it does nothing.
 void read_friction(const CaseFile& file, const GisReader& reader, double released, Scene& scene, Problems& problems);
 
 /// Whether a line, or a point of it, lies within xmin, ymin, xmax, ymax: its vertices may all lie beyond.
 bool comes_onto(const Polyline& line, const std::array<double, 4>& extent);
 
-/// Remarks on a terrain that may not be what was meant, on the material's numbers, and on releases that have their
-/// particles; they go to the scene's log.
+/// Remarks on a terrain that may not be what was meant, on the material's numbers, and on releases. These have their
+/// particles. The remarks go to the scene's log.
 void remark_on_terrain(const CaseFile& file, Scene& scene);
 void remark_on_material(const CaseFile& file, Scene& scene);
 /// A remark on each field of the output that no frame of this case has.
@@ -45,10 +45,11 @@ void remark_on_releases(const CaseFile& file, const std::vector<ReleaseSummary>&
 void remark_on_gaps(const Raster& field, const NodeMarks& claimed, const std::string& place,
                     std::vector<std::string>& log);
 
-/// [[release]] number `i` of a scene that has its terrain, in the terms of the particle generation: depth vertical,
-/// rasters read, outline read and within the terrain. A pixel that is material by outline or mask, but over nodata of the bed, has
-/// infinite depth. Outlines with depths of their own (depth = "field:NAME") are a release for each depth; otherwise it
-/// is one. What is wrong with its files goes to `problems`, and nothing comes back; remarks go to the scene's log.
+/// [[release]] number `i` of a scene that has its terrain, in the terms of the particle generation. The depth is
+/// vertical, rasters are read, and the outline is read and within the terrain. A pixel that is material by outline or
+/// mask, but over nodata of the bed, has infinite depth. Outlines with depths of their own (depth = "field:NAME") are a
+/// release for each depth; otherwise it is one. What is wrong with its files goes to `problems`, and nothing comes
+/// back; remarks go to the scene's log.
 std::vector<Release> read_release(const CaseFile& file, Index i, Scene& scene, const GisReader& reader,
                                   Problems& problems);
 
@@ -66,11 +67,11 @@ double rise_across(const Polyline& line, const Raster& bed);
 /// All [[section]] of a scene that has its terrain; down the slope of the ground counts as positive.
 std::vector<Section> read_sections(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems);
 
-/// All [[inflow]] of a scene that has its terrain and its laws. What is wrong with them goes to `problems`, what they bring to
-/// the scene's log.
+/// All [[inflow]] of a scene that has its terrain and its laws. What is wrong with them goes to `problems`, what they
+/// bring to the scene's log.
 void read_inflows(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems);
 
-/// Whether a case has free water and nothing beside it: what it releases is water.
+/// Whether a case has free water and nothing else: what it releases is water.
 inline bool water_alone(const CaseFile& file) {
     return file.word("water.model") == "free" && file.word("material.structure.law") == "none";
 }
@@ -96,14 +97,14 @@ std::optional<Forest> read_forest(const CaseFile& file, const GisReader& reader,
 /// remarks to the scene's log.
 std::optional<WaterPhase> read_water(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems);
 
-/// The [[stage]] in space, when the case has one. What does not fit together or the terrain goes to `problems`.
+/// The 3D [[stage]], when the case has one. What does not fit together or the terrain goes to `problems`.
 std::optional<SolidStage> read_solid_stage(const CaseFile& file, const Scene& scene, Problems& problems);
 
 /// All [[insitu]], with their cameras. What does not fit together, the terrain or the rheology goes to `problems`.
 std::vector<Insitu> read_insitu(const CaseFile& file, const Scene& scene, Problems& problems);
 
-/// A depth field whose pixels are larger than `cell` on pixels that are not: bilinear between their middles, each
-/// pixel's volume and the material's edge as they were.
+/// A depth field whose pixels are larger than `cell`, on pixels that are not. It is bilinear between their middles.
+/// Each pixel's volume and the material's edge stay as they were.
 Raster finer_field(const Raster& field, double cell);
 
 /// Nodes under a release: those inside the outline or next to its edge, where the depth field has material.
@@ -120,17 +121,17 @@ double cut_release(const Release& release, Raster& bed);
 
 /// Finds the holes inside the terrain, with a remark on what they are (boundary.holes).
 void find_holes(const CaseFile& file, Scene& scene);
-/// How high walls in holes stand above the ground beside them [m]: so that the surface does not fall towards them. What
+/// How high walls in holes stand above the adjacent ground [m]: so that the surface does not fall towards them. What
 /// comes onto them is stopped (shallow/sides.cpp). On flanks that rise by six cells in one a flow gains energy.
 double hole_wall_height(const Scene& scene);
-/// Makes them walls, when they are to be; of a scene that has its particles. Where the model knows
-/// no such walls that goes to `problems`.
+/// Makes them walls, when they are to be; of a scene that has its particles. Where the model has no such walls that
+/// goes to `problems`.
 void wall_holes(const CaseFile& file, Scene& scene, Problems& problems);
 
 /// Value between the nodes, bilinear; NaN where a node with weight is NaN or the point lies beyond the
 /// pixels.
 double bilinear(const Raster& raster, const Vec2& point);
-/// Gradient at a node by central differences, one-sided beside nodata and at the edge [unit of raster per m].
+/// Gradient at a node by central differences, one-sided next to nodata and at the edge [unit of raster per m].
 Vec2 node_gradient(const Raster& raster, Index i, Index j);
 
 }  // namespace frana

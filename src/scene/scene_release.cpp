@@ -184,7 +184,7 @@ private:
         return bilinear(bed_, within_terrain(Vec2(grid.x(i), grid.y(j))));
     }
 
-    /// Pixels at the rim of a mask may have their centre beyond the terrain that they overlap.
+    /// Pixels at the edge of a mask may have their centre beyond the terrain that they overlap.
     Vec2 within_terrain(const Vec2& point) const {
         const auto extent = bed_.geometry.pixel_extent();
         return {std::clamp(point.x(), extent[0], extent[2]), std::clamp(point.y(), extent[1], extent[3])};

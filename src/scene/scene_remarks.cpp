@@ -21,7 +21,7 @@ std::string into(const std::string& source, const char* suffix) {
 }
 
 /// A band of exact zeros, two nodes and more wide, that ends at a step of more than 60 degrees. A low coast at sea
-/// level is none: there most of the band's rim is flat.
+/// level is none: there most of the band's edge is flat.
 void remark_zero_margin(Scene& scene, const std::string& place) {
     constexpr double kCliff = 1.7320508075688772;  // tangent of 60 degrees
     constexpr Index kReach = 3;                    // cells over which resampling smears a step
@@ -67,7 +67,7 @@ void remark_feet(Scene& scene, const std::string& place) {
     remark_on(scene.log, Remark::high_as_in_feet, place, {highest, 0.0, files});
 }
 
-/// A given number, the meaning of which is that of `meaning`, that lies outside of what the kind of mass has.
+/// A given number outside of the range for the kind of mass. Its meaning is that of the key `meaning`.
 void remark_on_kind(const CaseFile& file, const std::string& key, const std::string& meaning, Scene& scene) {
     if (!file.given(key) || file.is_text(key)) return;
     const std::string& kind = file.word("case.kind");
@@ -82,10 +82,10 @@ void remark_on_kind(const CaseFile& file, const std::string& key, const std::str
               {value, 0.0, fmt::format("{:.4g} to {:.4g}{} for {}", low, high, after_number(unit), kind)});
 }
 
-/// Of all zones as well; rasters are not looked at.
+/// Of all zones as well; rasters are not checked.
 void remark_on_kind(const CaseFile& file, Scene& scene) {
     if (!file.has("case.kind")) return;
-    // The kind's density is that of what flows: of grains and water beside them together.
+    // The kind's density is that of what flows: of grains and water together.
     if (file.word("water.model") == "none") remark_on_kind(file, "material.density", "material.density", scene);
     for (const std::string name : {"rheology.yield_stress", "rheology.viscosity"}) {
         const std::string of_case = "material." + name;

@@ -17,7 +17,7 @@ public:
 
     std::optional<SolidStage> read() {
         const Index count = case_.count("stage");
-        Index space = count;  // the one in space
+        Index space = count;  // the 3D one
         for (Index i = 0; i < count; ++i) {
             prefix_ = fmt::format("stage.{}.", i);
             const bool in_3d = case_.word(prefix_ + "model") == "solid_flow";
@@ -46,7 +46,7 @@ private:
     double number(const char* name) const { return case_.number(prefix_ + name); }
     double number_or(const char* name, double otherwise) const { return given(name) ? number(name) : otherwise; }
 
-    /// Sizes that no space has: by a slip of the key, and the work or the memory would have no end.
+    /// Sizes that no 3D grid has: after a slip in the key, work or memory would have no end.
     void require_size(const SolidStage& stage) {
         const std::array<Index, 4>& w = stage.window;
         const double cell = scene_.bed.geometry.cell;
@@ -199,8 +199,8 @@ private:
             }
     }
 
-    /// What the material of the case is in space, where the stage names no law: mud or a fluid by its rheology; without one,
-    /// and with friction at the bed, sand that is as steep inside.
+    /// The 3D material of the case, where the stage names no law. It is mud or a fluid by its rheology. Without one,
+    /// and with friction at the bed, it is sand with the same friction inside.
     std::string law_of_case() const {
         if (given("law")) return case_.word(prefix_ + "law");
         if (std::holds_alternative<rheology::Bingham>(scene_.rheology)) return "bingham";

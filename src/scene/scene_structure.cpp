@@ -51,8 +51,9 @@ private:
     bool given(const char* name) const { return case_.given(key(name)); }
     double number(const char* name) const { return case_.number(key(name)); }
 
-    /// Squeezed grains push sideways by Kp = tan(45 + angle / 2)^2 times their weight: 14 times at 60 degrees, 58 at 75.
-    /// Their push then grows within a step, and they run away. Grains have 25 to 50 degrees; what stands steeper coheres.
+    /// The horizontal pressure of squeezed grains is Kp = tan(45 + angle / 2)^2 times their weight: 14 times at 60
+    /// degrees, 58 at 75. That pressure then grows within a step, and they run away. Grains have 25 to 50 degrees; what
+    /// stands steeper coheres.
     void refuse_steep_friction() {
         constexpr double kSteepest = 60.0;
         const double angle = number("friction_angle_deg");

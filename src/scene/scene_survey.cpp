@@ -1,4 +1,4 @@
-// [survey] of a case: its files are tried before the run, since a comparison that fails after it is of no use.
+// [survey] of a case. Its files are tried before the run, since a comparison that fails after it is of no use.
 #include "scene/scene_parts.h"
 #include "scene/survey_files.h"
 

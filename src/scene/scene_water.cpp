@@ -1,4 +1,4 @@
-// [water] of a case: free water, beside solids that hold together or alone.
+// [water] of a case: free water, together with solids that hold together or alone.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,8 +34,8 @@ void require(const Raster& raster, const std::string& file, const char* what, Go
                     at(raster.geometry, first), expected));
 }
 
-/// A rate on the nodes of the terrain [m/s]: a number, or a raster, whose own pixels have to be rates and to cover the
-/// terrain. Nothing where it is 0 everywhere.
+/// A rate on the nodes of the terrain [m/s]: a number or a raster. The raster's own pixels have to be rates and to
+/// cover the terrain. Nothing where it is 0 everywhere.
 Raster rate_on_nodes(const CaseFile& file, const GisReader& reader, const std::string& key, Scene& scene) {
     const GridGeometry& grid = scene.bed.geometry;
     if (!file.is_text(key)) {
@@ -104,7 +104,7 @@ void refuse_endless_steps(const CaseFile& file, const WaterPhase& water, const S
                  "check mud_alpha, mud_beta and mud_concentration, or give a larger grid.cell");
 }
 
-/// Grains that free water cannot be beside; scene/combinations.cpp has the rest.
+/// Grains that cannot go together with free water; scene/combinations.cpp has the rest.
 void refuse_light_grains(const CaseFile& file, const TwoPhaseMaterial& m, const Scene& scene, Problems& problems) {
     if (!file.given("material.density"))
         problems.add(file.place("material.density"), "not given with water.model = \"free\"",

@@ -33,7 +33,7 @@ Answer SharedReader::recalled(Memory<Answer>& memory, const std::string& questio
     return found->second.answer;
 }
 
-/// Which part is wanted is asked of each scene anew, since its releases may lie elsewhere; asking reads files as well.
+/// Which part is needed is found for each scene anew, since its releases may lie elsewhere. That reads files as well.
 Raster SharedReader::read_dem(const std::filesystem::path& file, const DemRequest& request,
                               std::vector<std::string>& log) const {
     const std::lock_guard<std::recursive_mutex> alone(*mutex_);
@@ -64,7 +64,7 @@ Raster SharedReader::read_dem(const std::filesystem::path& file, const DemReques
                     [&](auto& remarks) { return inner_.read_dem(file, told, remarks); });
 }
 
-/// Scenes that begin elsewhere ask for other parts: only some of them are held.
+/// Scenes that begin elsewhere need other parts: only some of them are held.
 void SharedReader::forget_terrain() const {
     constexpr std::size_t at_most = 16;
     if (terrain_.size() >= at_most) terrain_.clear();

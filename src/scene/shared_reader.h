@@ -8,8 +8,8 @@
 
 namespace frana {
 
-/// Answers from what `inner` said before to the same question. Scenes may be built on several threads at once: `inner` is asked
-/// by one of them at a time. Files that change meanwhile are not read again.
+/// Answers from what `inner` said before to the same question. Scenes may be built on several threads at once: one of
+/// them at a time calls `inner`. Files that change meanwhile are not read again.
 class SharedReader : public GisReader {
 public:
     explicit SharedReader(const GisReader& inner) : inner_(inner) {}
@@ -58,7 +58,7 @@ private:
     void forget_terrain() const;
 
     const GisReader& inner_;
-    /// What part is wanted may hang on other files, so one question may ask another.
+    /// What part is needed may depend on other files, so one call may cause another.
     std::shared_ptr<std::recursive_mutex> mutex_ = std::make_shared<std::recursive_mutex>();
     mutable Memory<Raster> rasters_, terrain_;
     mutable std::map<std::string, Raster> whole_;  ///< grids without values, as DemRequest::choose is told

@@ -9,7 +9,7 @@
 namespace frana {
 namespace {
 
-/// Whether any node of `grid` has a value in a raster on the same pixels, which may have more or fewer of them.
+/// Whether any node of `grid` has a value in a raster on the same pixels. The raster may have more or fewer of them.
 bool known_on(const Raster& raster, const GridGeometry& grid) {
     const GridGeometry& g = raster.geometry;
     const auto left = static_cast<Index>(std::lround((grid.x0 - g.x0) / g.cell));

@@ -1,5 +1,5 @@
 #pragma once
-// The files of a survey that a case names, or a command line, and how those that need care are read.
+// The files of a survey, named by a case or on a command line. Those that need care are read here.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -23,7 +23,7 @@ SurveyFiles survey_files(const CaseFile& file);
 Polyline read_survey_path(const GisReader& reader, const std::filesystem::path& file, const std::string& crs_wkt,
                           std::vector<std::string>& log);
 
-/// Difference of two surveys [m] on the pixels of `grid`, which is widened to all of the raster as for a deposit. NaN:
+/// Difference of two surveys [m] on the pixels of `grid`. It is widened to all of the raster, as for a deposit. NaN:
 /// not surveyed. UserError when no pixel of `grid` was surveyed.
 Raster read_bed_change(const GisReader& reader, const std::filesystem::path& file, const GridGeometry& grid,
                        const std::string& crs_wkt, std::vector<std::string>& log);

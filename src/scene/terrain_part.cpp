@@ -51,7 +51,7 @@ bool take_release(const CaseFile& file, Index i, const GisReader& reader, const 
     return true;
 }
 
-/// Rasters that differ in space besides the elevations can be read again later, with the same values at a node.
+/// Rasters that vary spatially besides the elevations can be read again later, with the same values at a node.
 bool fields_may_follow(const CaseFile& file, const GisReader& reader, const Raster& whole) {
     if (!has_fields(file)) return true;
     if (!reader.lasting()) return false;

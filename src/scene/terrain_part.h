@@ -1,6 +1,6 @@
 #pragma once
-// The part of a large terrain that a run begins with. Columns on it grow it before they come near its edge
-// (coupling/growing_columns.h), so no result depends on where the terrain ends beyond it.
+// The part of a large terrain that a run begins with. Particles extend it before they come near its edge
+// (coupling/growing_columns.h). So no result depends on where the terrain ends beyond it.
 #include <optional>
 
 #include "scene/case_file.h"
@@ -14,10 +14,10 @@ struct TerrainPart {
     std::vector<Vec2> shown;  ///< places of profiles, the survey and barriers [m]
 };
 /// The nodes around the releases, and those of gauges, profiles, barriers and the survey. `whole` is a raster without
-/// values. Nothing where the run needs all of it, or where the part would be all of it. So with other models than columns,
-/// walls at the sides, barriers given as meshes, looks in situ or output.extent = "terrain". So with friction from a table of
-/// classes, friction in space with deposition, rasters of the ground in another CRS, and a release by neither an outline nor a
-/// raster of its mask or depth.
+/// values. Nothing where the run needs all of it, or where the part would be all of it. So with models other than
+/// depth-averaged particles, walls at the sides, barriers given as meshes, [[insitu]], or output.extent = "terrain". So
+/// with friction from a table of classes, ground rasters in another CRS, and spatially varying friction with
+/// deposition. So too with a release by neither an outline nor a raster of its mask or depth.
 std::optional<TerrainPart> part_to_begin_with(const CaseFile& file, const Scene& scene, const GisReader& reader,
                                               const Raster& whole);
 

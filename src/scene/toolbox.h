@@ -1,6 +1,6 @@
 #pragma once
-// What the scene needs from the outside world (files of a GIS), as an interface: the solver library builds
-// without GDAL, the program hands in readers made with it (src/io/gdal_*.h).
+// The scene's interface to the outside world (files of a GIS). The solver library builds without GDAL. The program
+// supplies readers made with it (src/io/gdal_*.h).
 #include <array>
 #include <filesystem>
 #include <functional>
@@ -14,24 +14,24 @@
 
 namespace frana {
 
-/// What part of an elevation model is wanted, and how fine.
+/// What part of an elevation model to read, and how fine.
 struct DemRequest {
     std::optional<std::array<double, 4>> window;  ///< xmin, ymin, xmax, ymax in map coordinates [m]
     std::optional<double> cell;                   ///< node distance [m]; nothing: the pixel of the file
-    /// Told the grid before any of it is read (a raster without values): the nodes that are wanted. May throw to refuse it.
+    /// Told the grid before any of it is read (a raster without values): the nodes to read. May throw to refuse it.
     std::function<NodeBox(const Raster& whole)> choose = {};
 };
 
 /// How a raster lies to a part of the map.
 struct RasterPlace {
     bool touches = true;      ///< otherwise read_raster and read_onto refuse it
-    bool needs_warp = false;  ///< its CRS is another one: pixels then hang on the part that is read
+    bool needs_warp = false;  ///< its CRS is another one: pixels then depend on the part that is read
 };
 
 /// Polygons with a number each.
 struct ValuedPolygons {
     Polygons polygons;
-    std::vector<double> values;  ///< one for each part; empty: none were asked for
+    std::vector<double> values;  ///< one for each part; empty: none were requested
 };
 
 /// Readers of GIS files. Every problem is a UserError that names the file, what was found and a way out.
@@ -39,9 +39,9 @@ struct ValuedPolygons {
 class GisReader {
 public:
     virtual ~GisReader() = default;
-    /// Elevation model as nodes: window cut, resampled (area average to coarser, cubic to finer; untouched when
-    /// the cell is the pixel), scale/offset applied, nodata (value, mask or NaN) to NaN. Refuses a geographic
-    /// or non-metre CRS with the gdalwarp line that cures it.
+    /// Elevation model as nodes. The window is cut. The model is resampled: area average to coarser, cubic to finer;
+    /// untouched when the cell is the pixel. Scale and offset are applied, and nodata (value, mask or NaN) becomes NaN.
+    /// Refuses a geographic or non-metre CRS with the gdalwarp line that cures it.
     virtual Raster read_dem(const std::filesystem::path& file, const DemRequest& request,
                             std::vector<std::string>& log) const = 0;
     /// Reads parts of that model later on; may outlive this reader. Nothing: parts cannot be read here.
@@ -64,14 +64,14 @@ public:
         return {};
     }
     /// Any raster (depth, mask, velocity, ...) in its own pixels, cut to the pixels that touch `extent`
-    /// (xmin, ymin, xmax, ymax), reprojected only when its CRS is known and differs from `crs_wkt`. Pixels
-    /// must be square within 1e-6; NaN where nodata.
+    /// (xmin, ymin, xmax, ymax). It is reprojected only when its CRS is known and differs from `crs_wkt`. Pixels must
+    /// be square within 1e-6; NaN where nodata.
     virtual Raster read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
                                const std::string& crs_wkt, std::vector<std::string>& log) const = 0;
     /// The same, averaged / interpolated onto `grid`.
     virtual Raster read_onto(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
                              std::vector<std::string>& log) const = 0;
-    /// Heights or thicknesses of a survey on the pixels of `grid`; readers that can also widen it to all of the raster.
+    /// Heights or thicknesses of a survey on the pixels of `grid`. Readers may also widen it to all of the raster.
     virtual Raster read_deposit(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
                                 std::vector<std::string>& log) const {
         return read_onto(file, grid, crs_wkt, log);
@@ -86,7 +86,7 @@ public:
         throw UserError(file.string() + ": attributes cannot be read here");
     }
     /// A surveyed extent on the terrain of `extent` (xmin, ymin, xmax, ymax). Polygons that do not overlap one
-    /// another; readers that can also take a raster whose pixels above 0 are the extent.
+    /// another. Readers may also take a raster whose pixels above 0 are the extent.
     virtual Polygons read_survey(const std::filesystem::path& file, const std::array<double, 4>& extent,
                                  const std::string& crs_wkt, std::vector<std::string>& log) const {
         static_cast<void>(extent);

@@ -26,8 +26,8 @@ void for_each_node(const TileGrid& grid, Index margin, Body&& body) {
         for (Index i = window.i0() + margin; i < window.i1() - margin; ++i) body(i, j, grid.at(i, j));
 }
 
-/// Elevation of the nearest node that has one (breadth first from the known nodes), so that shape functions
-/// near the edge of the data have something to average.
+/// Elevation of the nearest node that has one, breadth first from the known nodes. So shape functions near the edge of
+/// the data have something to average.
 std::vector<double> filled(const Raster& bed) {
     const Index nx = bed.geometry.nx, ny = bed.geometry.ny;
     std::vector<double> z = bed.values;
@@ -53,8 +53,8 @@ std::vector<double> filled(const Raster& bed) {
     return z;
 }
 
-/// Index into 0..n-1 and the sign and offset of the extension beyond: mirrored at walls, odd about the end
-/// value (linear for a plane) at open sides.
+/// Index into 0..n-1 and the sign and offset of the extension beyond. It is mirrored at walls, odd about the end value
+/// (linear for a plane) at open sides.
 double extended(const std::vector<double>& z, Index nx, Index ny, Index i, Index j, bool wall) {
     if (i >= 0 && i < nx && j >= 0 && j < ny) return z[j * nx + i];
     const auto inside = [](Index k, Index n) { return std::clamp<Index>(k, 0, n - 1); };
@@ -70,8 +70,8 @@ double extended(const std::vector<double>& z, Index nx, Index ny, Index i, Index
     return 2.0 * z[jc * nx + ic] - z[inside(2 * jc - j, ny) * nx + inside(2 * ic - i, nx)];
 }
 
-/// The same up to kTile nodes beyond the domain on every side, whatever the tiles: filters that run often carry in what
-/// lies at the rim, and mirror images must stay so. The outer `margin_x` columns and `margin_y` rows are left out.
+/// The same up to kTile nodes beyond the domain on every side, whatever the tiles. Filters that run often carry in what
+/// lies at the edge, and mirrored nodes must stay so. The outer `margin_x` columns and `margin_y` rows are left out.
 template <class Body>
 void for_each_node_around(const TileGrid& grid, Index margin_x, Index margin_y, Body&& body) {
 #pragma omp parallel for schedule(static)
@@ -81,7 +81,7 @@ void for_each_node_around(const TileGrid& grid, Index margin_x, Index margin_y, 
 
 enum class Axis { x, y };
 
-/// Applies the symmetric weights w[0] (centre), w[1], w[2] along one direction, in all of its lines: only so do the two
+/// Applies the symmetric weights w[0] (centre), w[1], w[2] along one direction, in all of its lines. Only so do the two
 /// directions commute, and what is symmetric about a diagonal stays so.
 void smooth(const TileGrid& grid, LazyArray<double>& field, LazyArray<double>& scratch, Axis axis,
             const std::array<double, 3>& w) {
@@ -113,8 +113,8 @@ void average(const Scene& scene, const TileGrid& grid, LazyArray<double>& field,
     smooth(grid, field, scratch, Axis::y, averaging(scene));
 }
 
-/// Change of slope over a cell that a step can follow: it moves a point by up to scheme.cfl of a cell, and a sharper bend
-/// (a cliff's foot in one cell) would turn more than the speed at hand. What is sharper counts as this.
+/// Change of slope over a cell that a step can follow. A step moves a point by up to scheme.cfl of a cell. A sharper
+/// bend (a cliff's foot in one cell) would turn more than the speed at hand. What is sharper counts as this.
 constexpr double kSharpest = 0.5;
 
 /// Slope by the 4th-order stencil that also differentiates the free surface.
@@ -122,7 +122,7 @@ double slope_at(const double* z, Index step, double cell) {
     return (8.0 * (z[step] - z[-step]) - (z[2 * step] - z[-2 * step])) * (1.0 / (12.0 * cell));
 }
 
-/// The bed averaged over the shape function and smoothed to `curvature_length`, extended linearly whatever the sides: a
+/// The bed averaged over the shape function and smoothed to `curvature_length`, extended linearly whatever the sides. A
 /// slope that meets a wall is mirrored for the pressure, but it has no curvature there.
 LazyArray<double> smoothed_bed(const Scene& scene, const TileGrid& grid, const std::vector<double>& z) {
     LazyArray<double> smoothed(grid.size()), scratch(grid.size());

@@ -1,6 +1,6 @@
 #pragma once
-// The bed as the solver sees it, one number per node and quantity: computed once, and anew where it is eroded.
-// THEORY (5) to (7).
+// The bed for the solver, one number per node and quantity. It is computed once, and anew where it is eroded. THEORY
+// (5) to (7).
 #include <array>
 
 #include "mpm/tile_grid.h"
@@ -9,14 +9,15 @@
 
 namespace frana {
 
-/// Nodes that are no ground like others. Exits: the elevation model has no data, outside of the terrain or in a hole of it;
-/// or points that leave are noted, for another model to take them up. And holes that are walls, where nothing leaves.
+/// Nodes that are no ground like others. Exits: the elevation model has no data, outside of the terrain or in a hole of
+/// it. Or points that leave are noted, for another model to take them up. And holes that are walls, where nothing
+/// leaves.
 constexpr std::uint8_t kNoData = 1, kNoted = 2, kHole = 3, kWall = 4;
 inline bool leads_out(std::uint8_t kind) { return kind != 0 && kind != kWall; }
 inline bool has_no_data(std::uint8_t kind) { return kind == kNoData || kind == kHole || kind == kWall; }
 
-/// Node values on the storage of a TileGrid, filled on all of it (beyond walls mirrored, beyond open sides
-/// extended linearly, over nodata by the nearest known value, to which a wall in a hole adds its height in z and ground).
+/// Node values on the storage of a TileGrid, filled on all of it. Beyond walls they are mirrored, beyond open sides
+/// extended linearly. Over nodata they have the nearest known value. A wall in a hole adds its height to that in z and ground.
 struct BedGeometry {
     LazyArray<double> z;       ///< bed averaged with the node's own shape function, (1/A) int N_i Z dx [m]
     LazyArray<double> ground;  ///< the elevation model's own elevation at the node [m]
@@ -35,17 +36,17 @@ struct BedGeometry {
 /// Slopes of the bed smoothed to `curvature_length`, which velocities along the bed follow [1].
 LazyArray<Pair> smooth_slopes(const Scene& scene, const TileGrid& grid);
 
-/// Fills the geometry of scene.bed for the scheme's shape function (quadratic: the elevation model is taken
-/// bilinear between nodes, and its average with the B-spline is exact: weights (1, 76, 230, 76, 1)/384 in each
-/// direction; cubic: (1, 26, 66, 26, 1)/120; linear: z is the nodal elevation itself, as Fois et al. 2024 have it).
+/// Fills the geometry of scene.bed for the scheme's shape function. quadratic: the elevation model is taken bilinear
+/// between nodes, and its average with the B-spline is exact. Its weights are (1, 76, 230, 76, 1)/384 in each
+/// direction. cubic: (1, 26, 66, 26, 1)/120. linear: z is the nodal elevation itself, as Fois et al. 2024 have it.
 /// Throws UserError when scene.bed holds no data at all.
 BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid);
 
-constexpr Index kSlopeReach = 2;  ///< how far slopes and least elevations look [nodes]
+constexpr Index kSlopeReach = 2;  ///< reach of slopes and least elevations [nodes]
 
 /// Slopes and least elevations of some of a tile's nodes anew, from z up to kSlopeReach nodes around.
 void refresh_slopes(const TileGrid& grid, BedGeometry& bed, Index tile, const TileBox& nodes = TileBox::whole());
-/// Slopes and curvature of the smoothed bed of a tile's nodes anew, from up to two nodes around; bed.smoothed is there.
+/// Slopes and curvature of the smoothed bed of a tile's nodes anew, from up to two nodes around. bed.smoothed is there.
 void refresh_path(const TileGrid& grid, BedGeometry& bed, Index tile);
 
 /// A level bed at zero, without curvature.

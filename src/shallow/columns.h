@@ -57,7 +57,7 @@ struct Columns : Carried<double> {
         return single ? work(float{}) : work(double{});
     }
 
-    /// The one list of floating-point columns in use: sorting and growing walk it.
+    /// The one list of floating-point columns in use, for sorting and growing.
     template <class Visit>
     void each(Visit&& visit) {
         each_of(*this, visit);
@@ -119,7 +119,7 @@ public:
     const std::vector<std::int32_t>& order() const { return order_.order(); }
     /// Leaves points marked in `gone` out of a plan.
     void leave_out(const std::vector<std::uint8_t>& gone, ActiveTiles& active) { order_.leave_out(gone, active); }
-    /// Drops the points marked in `gone`; the others keep their order and tiles.
+    /// Drops the points marked in `gone`; the order and tiles of the others stay.
     void drop(Columns& columns, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
     /// Makes `active` whole from its tiles and their ranges.
     void list_tiles(const TileGrid& grid, ActiveTiles& active);

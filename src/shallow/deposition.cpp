@@ -10,7 +10,8 @@
 namespace frana {
 namespace {
 
-/// How often what rests is looked for within the time that it has to: each time all that stay close their ranks.
+/// How often material at rest is searched for within the time that it has to rest. Each time all that stay close their
+/// ranks.
 constexpr double kLooks = 10.0;
 
 /// Whether a step ended a stretch of time, or a time [s] of none.
@@ -18,7 +19,7 @@ bool ends_stretch(const Clock& now, double stretch) {
     return !(stretch > 0.0) || std::floor(now.time / stretch) != std::floor((now.time - now.dt) / stretch);
 }
 
-/// Whether a point is no faster than `slowest` [m/s], and a cell of `cell` [m] beside it neither.
+/// Whether a point is no faster than `slowest` [m/s], and a cell of `cell` [m] next to it neither.
 template <class Real>
 bool is_still(const Carried<Real>& held, Index p, double slowest, double cell) {
     for (const auto* column : {&held.cxx, &held.cxy, &held.cyx, &held.cyy})
@@ -61,7 +62,8 @@ std::optional<ExchangeSums> Erosion::settle(Flow& flow, const Status& now) {
     return all;
 }
 
-/// THEORY.md, section 20. As the rest of a run (63), of which the first two are; and it goes no tenth of a cell while it has to rest.
+/// THEORY.md, section 20. As the rest of a run (63), of which the first two are. And it goes no tenth of a cell while
+/// it has to rest.
 void Erosion::note_slowest(const Flow& flow, const Status& now) {
     constexpr double kOfCell = 0.1;
     const double became_bed = std::max(0.0, now.bed.deposited - now.bed.eroded), all = now.mass + became_bed;
@@ -114,7 +116,7 @@ bool Erosion::choose_settled(const Flow& flow, Index n) {
     return any;
 }
 
-/// Whether all nodes that a point deposits on have rested: mass on those of its sub-points, momentum on those around itself.
+/// Whether all nodes that a point deposits on have rested. Mass is on those of its sub-points, momentum on those around itself.
 template <class Real>
 bool Erosion::lies_on_rest(const Flow& flow, Index p) const {
     const Columns& c = flow.columns;
@@ -129,8 +131,8 @@ bool Erosion::lies_on_rest(const Flow& flow, Index p) const {
     return rest;
 }
 
-/// What the points of the tiles chosen give, `wanted_`, lies on the bed from now on, as they would have deposited it: z rises
-/// by what the flow's depth falls.
+/// What the points of the tiles chosen give, `wanted_`, lies on the bed as they would have deposited it. z
+/// rises by what the flow's depth falls.
 void Erosion::give(Flow& flow) {
     list_given(flow);
     CompensatedSum given;
@@ -155,7 +157,7 @@ void Erosion::give(Flow& flow) {
     status_changed();
 }
 
-/// Tiles whose nodes the chosen ones reach; at walls all, since images lie beyond.
+/// Tiles whose nodes the chosen ones reach; at walls all, since mirror particles lie beyond.
 void Erosion::list_given(const Flow& flow) {
     nodes_.clear();
     for (Index n = 0; n < flow.active.count(); ++n)

@@ -13,16 +13,16 @@
 namespace frana {
 namespace {
 
-/// What a step does once, however short it is, adds up with the number of steps: affine points lose of their motion what
-/// the nodes cannot hold, and crowded points merge. So steps shorter than those of this scheme.cfl do less of it.
+/// What a step does once, however short it is, adds up with the number of steps. Affine points lose of their motion
+/// what the nodes cannot hold, and crowded points merge. So steps shorter than those of this scheme.cfl do less of it.
 constexpr double kOrdinaryCfl = 0.5;
 /// A bed loses where points have arrived, half a step's way too late. 3D points take over what arrives in a step at
 /// once. Both err twice as much with steps twice as long, where the flow itself hardly errs more.
 constexpr double kMostCflOfExchange = 0.5;
 constexpr double kStepsBetweenSplits = 3.0;  ///< ordinary ones
-/// Cells a point may have moved since the last sort: same-colour tiles then still share no node, as long as the drift d
-/// keeps 16 + d + 2 < 32 - d - 1 (sub-points reach from one node before the quadratic stencil to one behind it), d <= 6;
-/// cubic: d <= 5. A step that moves a point by more than 4 cells is refused.
+/// Cells a point may have moved since the last sort. Same-colour tiles then still share no node, as long as the drift d
+/// satisfies 16 + d + 2 < 32 - d - 1: d <= 6, cubic d <= 5. (Sub-points reach from one node before the quadratic
+/// stencil to one behind it.) A step that moves a point by more than 4 cells is refused.
 constexpr double kDriftLimit = 3.0;
 /// A step in which a signal would cross so many times what it was chosen for (scheme.cfl) is shortened. The default scheme
 /// holds to twice its scheme.cfl and more (tests/cfl_map.txt).
@@ -71,8 +71,8 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     if (scene.still_surface && scene.scheme.paper_pressure)
         level_points(*scene.still_surface);
     else if (scene.still_surface && scene.scheme.mass_fit && scene.scheme.shape != Shape::linear) {
-        // Points that split later would spread over other nodes than those they were fitted on; the fit makes some heavy
-        // enough to split.
+        // Points that split later would spread over other nodes than those they were fitted on. The fit makes some
+        // heavy enough to split.
         const auto split = [&] { return splitter_.split(flow_) > 0; };
         const auto sort = [&] { sorter_.sort(flow_.columns, flow_.grid, {}, flow_.active); };
         while (split()) sort();
@@ -136,7 +136,7 @@ void DepthAveraged::place(const Seeds& seeds) {
     sorter_.sort(c, flow_.grid, {}, flow_.active);
 }
 
-/// Depths of a lake's points up to the level from the bilinear bed beneath each, as the paper's points have them.
+/// Depths of a lake's points up to the level from the bilinear bed beneath each, as in the paper.
 void DepthAveraged::level_points(double level) {
     Columns& c = flow_.columns;
     for (Index p = 0; p < c.count(); ++p) {
@@ -163,7 +163,7 @@ void DepthAveraged::advance(double until) {
     timed_("kick and friction", [&] { mirror_motion(flow_); });
     const double next_velocity_dt = 0.5 * (dt + longest_step());
     const bool rows = feed_ && feed_->due(status_.after(dt, until));
-    // Rows wait until points are sorted anyway: a sort of its own for each would cost a fifth of a step.
+    // Rows wait until points are sorted anyway. A sort of its own for each would cost a fifth of a step.
     const bool adapts = due || drift_ > drift_before_carry(flow_.scheme) || (rows && flow_.columns.count() == 0);
     const bool fed = rows && adapts, apart = adapts || erosion_;
     if (passages_) timed_("sections", [&] { passages_->note(flow_); });
@@ -185,8 +185,8 @@ void DepthAveraged::advance(double until) {
     if (!aside_ && added_.count() > 0) enter_added();
 }
 
-/// Grid updates the nodes for a step of `dt` or, where forces drive them much farther than the step was chosen for, a
-/// shorter one: the step follows the last one's signal, and a film on a cliff, say, has none before it falls. Returns
+/// Grid updates the nodes for a step of `dt`. Where forces drive them much farther than the step was chosen for, it is
+/// a shorter one. The step follows the last one's signal, and a film on a cliff, say, has none before it falls. Returns
 /// the step.
 double DepthAveraged::update_nodes(double dt) {
     const double reach = flow_.scheme.cfl * flow_.cell;
@@ -251,7 +251,7 @@ NodeSums DepthAveraged::raise_surface() {
     return sums;
 }
 
-/// Every few steps points split where they spread, and tiles are kept up to date; a deposit follows.
+/// Every few steps points split where they spread, and tiles are brought up to date; a deposit follows.
 void DepthAveraged::adapt_points(bool due, bool fed) {
     const bool has_domains = !flow_.scheme.paper_pressure;
     if (due) since_split_ = 0.0;
@@ -302,7 +302,7 @@ bool DepthAveraged::merge_points() {
     return merged > 0;
 }
 
-/// dt = 2 C dx / (S + sqrt(S^2 + 2 g C dx)), S the fastest signal: what a signal that also accelerates by g needs
+/// dt = 2 C dx / (S + sqrt(S^2 + 2 g C dx)), S the fastest signal. It is what a signal that also accelerates by g needs
 /// to cross the fraction C of a cell. A film at rest (S = 0) gets a step too.
 double DepthAveraged::longest_step(double cfl, double signal) const {
     const double reach = cfl * flow_.cell;
@@ -382,7 +382,7 @@ Index DepthAveraged::particle_bytes() const {
 namespace {
 
 /// Debris flows grow tenfold on their way, few of them fiftyfold. A flow that grows more takes all that it reaches, and
-/// what it reaches hangs on the cell.
+/// what it reaches depends on the cell.
 std::string remark_on_growth(const Status& now) {
     constexpr double kMost = 100.0;
     const double given = now.mass + now.mass_left - (now.bed.eroded - now.bed.deposited);

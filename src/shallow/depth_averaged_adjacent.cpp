@@ -8,7 +8,7 @@ namespace frana {
 void DepthAveraged::set_adjacent(const std::vector<double>& depth) {
     expect(static_cast<Index>(depth.size()) == flow_.grid.geometry().size(),
            "every node of the grid has a depth of other material");
-    flow_.scheme.sleep = false;  // what stands beside sleeping columns may stir them
+    flow_.scheme.sleep = false;  // what is adjacent to sleeping columns may stir them
     for (const Index tile : flow_.active.tile) flow_.active.quiet[tile] = 0;
     timed_("beside", [&] {
         stress_power_ = transfer_->deposit(flow_, 0.5 * (status_.dt + longest_step())).stress_power;
@@ -18,7 +18,7 @@ void DepthAveraged::set_adjacent(const std::vector<double>& depth) {
     raise_surface();
 }
 
-/// Adds its volume to what the depth is made of, not to the mass that is driven. Its nodes count as touched.
+/// Adds its volume to what the depth is made of, not to the mass that is driven. Its nodes count as in reach.
 void DepthAveraged::add_adjacent(const std::vector<double>& depth) {
     const Index nx = flow_.grid.nx(), ny = flow_.grid.ny();
     const double column = flow_.density * flow_.area;

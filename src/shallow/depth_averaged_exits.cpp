@@ -22,7 +22,7 @@ double kinetic_of(const Flow& flow, Index p, Index k) {
     return 0.5 * flow.columns.mass[p] * (vx * vx + vy * vy + vz * vz);
 }
 
-/// Tiles that sleep keep what they deposited: not beside what comes or goes.
+/// What tiles that sleep deposited stays: not next to what comes or goes.
 void wake_all(Flow& flow) {
     for (const Index tile : flow.active.tile) flow.active.quiet[tile] = 0;
 }
@@ -106,7 +106,7 @@ double DepthAveraged::take_in(const Seeds& seeds, const std::vector<Mat2>& gradi
     return came.left_energy;
 }
 
-/// Rows of inflows that are complete now, behind the columns that are there; a sort and a deposit have to follow.
+/// Rows of inflows that are complete now, behind the columns that are there. A sort and a deposit have to follow.
 void DepthAveraged::take_rows() {
     const Feed::Columns& rows = feed_->take(status_.time);
     Columns& c = flow_.columns;
@@ -175,8 +175,8 @@ double DepthAveraged::place_late(const LateRelease& release, PointSums& came) {
     return kinetic;
 }
 
-/// All that moves is brought to the present, so that the next step is as at a start for all of it. Potential energy comes in as
-/// the nodes count it.
+/// All that moves is brought to the present. So the next step is as at a start for all of it. Potential energy comes in
+/// as the nodes count it.
 void DepthAveraged::take_late(const std::vector<const LateRelease*>& releases) {
     if (flow_.columns.count() > 0) catch_up();
     status_.dt = 0.0, since_split_ = 0.0;

@@ -27,8 +27,8 @@ void for_all_output_nodes(const Flow& flow, const NodeBox& box, Body&& body) {
         for (Index i = 0; i < box.nx; ++i) body(flow.grid.at(box.i0 + i, box.j0 + j), j * box.nx + i);
 }
 
-/// Bed at a point: elevation, its own slope, and that of the smoothed bed, which velocities follow (zero on gentle terrain),
-/// with its curvature where that counts.
+/// Bed at a point: elevation, its own slope, and that of the smoothed bed. Velocities follow the latter (zero on gentle
+/// terrain). It has its curvature where that counts.
 struct BedHere {
     double z = 0.0, slope_x = 0.0, slope_y = 0.0, path_x = 0.0, path_y = 0.0, hxx = 0.0, hxy = 0.0, hyy = 0.0;
 
@@ -104,7 +104,7 @@ Status DepthAveraged::frame_status() {
 
 Sample DepthAveraged::at(const Vec2& point) const {
     const GridGeometry& g = flow_.grid.geometry();
-    // A point in the outer half pixel shows its rim.
+    // A point in the outer half pixel shows its edge.
     const double u = std::clamp((point.x() - g.x0) / g.cell, 0.0, static_cast<double>(g.nx - 1));
     const double v = std::clamp((point.y() - g.y0) / g.cell, 0.0, static_cast<double>(g.ny - 1));
     Sample sample;
@@ -125,7 +125,7 @@ Sample DepthAveraged::at(const Vec2& point) const {
     return sample;
 }
 
-/// What counts for the largest speed: not the film at the flow's rim.
+/// What counts for the largest speed: not the film at the flow's edge.
 static double speed_that_counts(double depth, double footprint_depth, double speed) {
     return depth < 0.1 * footprint_depth ? 0.0 : speed;
 }
@@ -245,7 +245,7 @@ double DepthAveraged::node_fields(Frame& frame) {
     return fastest;
 }
 
-/// Stress of the rheology at the points and, mass-weighted, on the nodes; effective_stress adds the depth-averaged
+/// Stress of the rheology at the points and, mass-weighted, on the nodes. effective_stress adds the depth-averaged
 /// pressure: sigma - rho g h / 2 (Fois et al. 2024, before eq. 10).
 void DepthAveraged::stress_fields(Frame& frame) {
     const Index count = flow_.columns.count(), nodes = shown_.nx * shown_.ny;

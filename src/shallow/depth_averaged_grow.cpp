@@ -1,4 +1,4 @@
-// A run that goes on on a larger grid, because its material comes near the end of the one that it has.
+// A run that goes on on a larger grid, because its material comes near the end of its own.
 #include <algorithm>
 
 #include "shallow/depth_averaged.h"

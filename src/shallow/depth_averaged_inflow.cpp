@@ -8,7 +8,7 @@
 namespace frana {
 namespace {
 
-constexpr double kSupport = 4.0;  ///< behind the line, beyond what passes over nodes look at [cells]
+constexpr double kSupport = 4.0;  ///< behind the line, beyond the reach of passes over nodes [cells]
 
 /// Nodes that a column's sub-points may touch, of any shape.
 struct Touched {
@@ -63,10 +63,10 @@ double potential(const Flow& flow, Index k, double mass) {
 
 }  // namespace
 
-/// Beside what may come in nothing sleeps: its nodes have depth that no column tells of.
+/// Next to what may come in nothing sleeps: its nodes have depth that is of no column.
 void DepthAveraged::choose_sleep() { flow_.scheme.sleep = sleeps_ && !(feed_ && !feed_->over()); }
 
-/// Before walls fold the deposit and the surface is made. Its nodes count as touched.
+/// Before walls fold the deposit and the surface is made. Its nodes count as in reach.
 void DepthAveraged::support_inflows() {
     supports_->clear();
     supported_.clear();
@@ -99,7 +99,7 @@ void DepthAveraged::support_inflows() {
     activate_all(flow_);
 }
 
-/// Where what is still to come stands, the deposit has touched the nodes.
+/// Where what is still to come stands, the deposit has reached the nodes.
 void DepthAveraged::reach_supports() {
     const Index stride = flow_.grid.stride();
     supports_->for_each([&](Index k) {
@@ -108,7 +108,7 @@ void DepthAveraged::reach_supports() {
     });
 }
 
-/// What holds an inflow up is folded too: what is left of a node's mass without it is the flow's own.
+/// What holds an inflow up is folded too. What is left of a node's mass without it is the flow's own.
 void DepthAveraged::fold_with_support() {
     if (!flow_.walls || supported_.empty()) return fold_walls(flow_);
     for (Supported& node : supported_) node.own = flow_.nodes.column_mass[node.k] - node.own;  // now what is not

@@ -1,4 +1,4 @@
-// What of the columns moves, for the rule of rest. Looked at rarely, and by one thread: sums have one order.
+// What of the columns moves, for the rule of rest. Sampled rarely, and by one thread: sums have one order.
 #include "shallow/depth_averaged.h"
 
 namespace frana {

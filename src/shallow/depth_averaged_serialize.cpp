@@ -1,7 +1,7 @@
-// The state of a depth-averaged run between two steps, as it is kept and taken up again. Kept are the points in their
-// order, the tiles they are sorted by (they have moved since), the sums of the run, the peaks, and what the points
-// have deposited on the nodes: a second deposit would add in another order where points have left in between. What
-// else nodes have follows from the deposit.
+// The state of a depth-averaged run between two steps, as it is serialized. It holds the points in their order, the
+// tiles they are sorted by, the run's sums and the peaks. (Points have moved since the sort.) It also holds what the
+// points have deposited on the nodes. A second deposit would add in another order where points have left in between.
+// What else nodes have follows from the deposit.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -150,7 +150,7 @@ std::vector<Index> DepthAveraged::tiles_of_a_step() const {
     return tiles;
 }
 
-/// Where nothing ever was, peaks are zero and are not kept.
+/// Where nothing ever was, peaks are zero and are not saved.
 void DepthAveraged::serialize_peaks(Archive& archive) {
     const Archive::Part part(archive, "peaks");
     std::vector<Index> tiles;

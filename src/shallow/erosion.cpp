@@ -53,10 +53,11 @@ ErodibleBed rock_of(const Scene& scene) {
     return bed;
 }
 
-/// What the law alone takes of the speeds of four points on the map [m/s^2]: over a time in which no flow changes much.
+/// What the law alone takes of the speeds of four points on the map [m/s^2]. It is over a time in which no flow changes
+/// much.
 template <class Law>
 Double4 decelerations(const Law& law, const BedStateOf<Double4>& bed, Double4 speed) {
-    constexpr double kShort = 2e-5;  // [s]; shorter, rounding would part mirror images
+    constexpr double kShort = 2e-5;  // [s]; shorter, rounding would part mirror particles
     return (speed - speeds_after(law, bed, speed, speed, kShort)) * (1.0 / kShort);
 }
 
@@ -72,7 +73,7 @@ Double4 growth_of_four(Double4 x) {
     return sum;
 }
 
-/// Shares of their masses that four points want in a step; `middle`: to second order, for the middle of the step.
+/// Shares of their masses that four points demand in a step. `middle`: to second order, for the middle of the step.
 template <class Law>
 Double4 wanted_shares(const Law& law, const erosion::StateOf<Double4>& s, bool middle) {
     Double4 rate = law.rate(s);
@@ -141,7 +142,7 @@ Erosion::Erosion(const Scene& scene, const ErodibleBed& bed, Flow& flow)
             const Index k = grid.at(i, j);
             if (takes_ && flow.bed.exit[k] == 0) initial_[k] = bed.depth.at(i, j) / per_area_;
         }
-    if (flow.walls)  // beyond them lies the mirror image
+    if (flow.walls)  // beyond them lie the mirror particles
         for (Index j = -kGhosts; j < grid.ny() + kGhosts; ++j)
             for (Index i = -kGhosts; i < grid.nx() + kGhosts; ++i) {
                 const auto mirror = [](Index n, Index count) {
@@ -270,7 +271,7 @@ void Erosion::make_room(const Flow& flow) {
     sums_.assign(tiles, {}), spread_to_.resize(tiles);
 }
 
-/// THEORY (72): what each point wants, and their sum on the nodes.
+/// THEORY (72): the demand of each point, and their sum on the nodes.
 void Erosion::find_demand(Flow& flow, double dt) {
     flow.columns.with_real([&](auto real) {
         using Real = decltype(real);
@@ -293,7 +294,7 @@ void Erosion::find_demand(Flow& flow, double dt) {
     fold(flow, demand_);
 }
 
-/// What a law sees below four points besides their ground: how much was taken, and what is left. kFresh: material may have
+/// A law's input below four points besides their ground: how much was taken, and what is left. kFresh: material may have
 /// been left behind, that a law has not taken yet.
 template <class Law, bool kFresh>
 void Erosion::see_layer(const MeansOfFour& means, Double4 cosine, erosion::StateOf<Double4>& state) const {
@@ -306,12 +307,12 @@ void Erosion::see_layer(const MeansOfFour& means, Double4 cosine, erosion::State
 
 namespace {
 
-/// THEORY.md, section 20: what deposits below four points bear [Pa]: friction at rest has held them. The speed is along the map. A
-/// thin layer bears less: what lies below it is felt.
+/// THEORY.md, section 20: what deposits below four points bear [Pa]: friction at rest has held them. The speed is along
+/// the map. A thin layer bears less: what lies below it is felt.
 template <class Law>
 Double4 strengths(const Law& law, const BedStateOf<Double4>& bed, Double4 speed, const erosion::StateOf<Double4>& s) {
     constexpr double kCreep = 0.01;     // [m/s]; what of the friction grows with the speed is nothing yet
-    constexpr double kRounding = 1e-6;  // where friction does not hang on the speed, nothing is left above it
+    constexpr double kRounding = 1e-6;  // where friction does not depend on the speed, nothing is left above it
     constexpr double kThinnest = 0.01;  // of the flow, from which on a deposit bears all
     const Double4 one = all(1.0), held = decelerations(law, bed, min(speed, all(kCreep)));
     const Double4 covers = min(s.lies / (kThinnest * s.thickness), one);
@@ -321,7 +322,7 @@ Double4 strengths(const Law& law, const BedStateOf<Double4>& bed, Double4 speed,
 }  // namespace
 
 /// Velocities are those of the step's momentum over the mass before it (leapfrog). In the middle of the step, where the
-/// way and the law are taken, half of the gain shares it: such points have come too far, and are set back.
+/// way and the law are taken, half of the gain shares it. Such points have come too far, and are set back.
 template <class Law, class Friction, class Real, bool kFresh>
 void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, const Friction& friction) {
     Columns& c = flow.columns;
@@ -340,7 +341,7 @@ void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, con
         // Those that rest do as if they moved: nothing comes of it.
         const Double4 u = select(moves, on_map, one), ux = select(moves, vx, one), uy = select(moves, vy, none);
         const Double4 deep = select(moves, depth, one);
-        // A curved bed changes the weight alone, which only friction and laws of it ask for.
+        // A curved bed changes the weight alone, which only friction and laws of it use.
         const GroundOfFour ground(flow, curved_ && feels, means, ux, uy, deep);
         erosion::StateOf<Double4> state;
         state.density = flow.density, state.bed_density = density_, state.dt = dt;
@@ -383,7 +384,7 @@ Double4 Erosion::set_back(Flow& flow, Index p, int lanes, Mask4 chosen, Double4 
     return select(chosen, max(abs(x - x0), abs(y - y0)), none);
 }
 
-/// A point that gets the share `got` < 1 of what it wants was set back too far by the rest. Where it gets nothing it is
+/// A point that gets the share `got` < 1 of its demand was set back too far by the rest. Where it gets nothing it is
 /// where it was, to the last bit: an empty bed changes nothing.
 void Erosion::return_part(Flow& flow, Index p, double got) const {
     Columns& c = flow.columns;
@@ -391,8 +392,8 @@ void Erosion::return_part(Flow& flow, Index p, double got) const {
     c.y[p] = from_y_[p] + got * (c.y[p] - from_y_[p]);
 }
 
-/// THEORY (76): the share of its velocity that a point keeps when it grows by `gain` of its mass. What is taken brings at
-/// most the momentum that friction takes meanwhile, `braked` of the flow's own.
+/// THEORY (76): the share of its velocity that a point retains when it grows by `gain` of its mass. What is taken
+/// brings at most the momentum that friction takes meanwhile, `braked` of the flow's own.
 Double4 Erosion::speeds_left(Double4 gain, Double4 braked) const {
     const Double4 grown = 1.0 + gain;
     if (momentum_ == 0.0) return 1.0 / grown;
@@ -426,7 +427,7 @@ void Erosion::spread(const Flow& flow, Index n, const Array& masses, LazyArray<d
 template void Erosion::spread<double>(const Flow&, Index, const Array&, LazyArray<double>&);
 template void Erosion::spread<float>(const Flow&, Index, const Array&, LazyArray<double>&);
 
-/// The nodes that the chosen tiles' points gave something to. At walls all: images give too.
+/// The nodes that the chosen tiles' points gave something to. At walls all: mirror particles give too.
 void Erosion::collect_reach(const Flow& flow) {
     for (const Index tile : nodes_) in_reach_[tile] = flow.walls ? kAllGroups : 0;
     if (flow.walls) return;
@@ -437,7 +438,8 @@ void Erosion::collect_reach(const Flow& flow) {
             });
 }
 
-/// Closes the domain at walls: adds what mirror images bring, and gives the nodes beyond what their images have.
+/// Closes the domain at walls. Adds what mirror particles bring, and gives the nodes beyond what their mirror nodes
+/// have.
 void Erosion::fold(const Flow& flow, LazyArray<double>& field) const {
     if (!flow.walls) return;
     for (int axis = 0; axis < 2; ++axis)
@@ -467,7 +469,7 @@ bool Erosion::find_shares(Flow& flow) {
 }
 
 /// THEORY (74) and (75): each point gets by its poorest node, then what nodes have left over goes round. Few points get less
-/// than they want: what those miss goes to the nodes.
+/// than they demand: what those miss goes to the nodes.
 void Erosion::share_out(Flow& flow) {
     flow.columns.with_real([&](auto real) {
         using Real = decltype(real);
@@ -491,7 +493,7 @@ void Erosion::share_out(Flow& flow) {
 
 namespace {
 
-/// Whether all nodes that sub-points of four points can touch have the same share; not beside the grid's sides.
+/// Whether all nodes that sub-points of four points can reach have the same share; not next to the grid's sides.
 bool all_usual(const Flow& flow, const LazyArray<double>& share, double usual, Double4 x, Double4 y, int lanes) {
     const Int4 i = floor_positive(x + (kTile - 1.0)) - 1, j = floor_positive(y + (kTile - 1.0)) - 1;
     const Index stride = flow.grid.stride();
@@ -503,9 +505,9 @@ bool all_usual(const Flow& flow, const LazyArray<double>& share, double usual, D
     return !any(other);
 }
 
-/// Calls take(p, number) for the points of a tile that want something. The number is what of_window finds on the shares of
-/// the window's nodes. Where sub-points lie too far away for a window, it is that of of_point(p, edges). Among nodes of the
-/// usual share it is that share.
+/// Calls take(p, number) for the points of a tile that have a demand. The number is what of_window finds on the shares
+/// of the window's nodes. Where sub-points lie too far away for a window, it is that of of_point(p, edges). Among nodes
+/// of the usual share it is that share.
 template <class Real, class OfWindow, class OfPoint, class Take>
 void for_each_wanting(const Flow& flow, Index n, const Array& wanted, const LazyArray<double>& share, double usual,
                       OfWindow&& of_window, OfPoint&& of_point, Take&& take) {

@@ -1,10 +1,10 @@
 #pragma once
-// The flow takes up loose material of its bed, and leaves some behind: a ledger of mass per node, and the exchange of a step
-// (THEORY.md, sections 18, 20, 21).
+// The flow takes up loose material of its bed, and leaves some behind (THEORY.md, sections 18, 20, 21). Here are the
+// ledger of mass per node, and the exchange of a step.
 //
-// Points know what they want, nodes what there is. So a point gets the share of its demand that the poorest of its nodes can
-// give to all that want; what nodes have left over goes to those that want it. Where the supply lasts, each node loses what
-// the points that gain deposit there: the surface of flow and bed does not move.
+// Points have the demand, nodes the supply. So a point gets the share of its demand that the poorest of its nodes can
+// give to all demands. What nodes have left over goes to the points with unmet demand. Where the supply lasts, each
+// node loses what the points that gain deposit there. The surface of flow and bed does not move.
 #include <memory>
 #include <optional>
 #include <vector>
@@ -27,8 +27,8 @@ struct ExchangeSums {
     double max_shift = 0.0;     ///< that a point was set back [cells]
 };
 
-/// The erodible bed of a run, and the passes over it. Numbers of nodes are those of a full node: at walls half of the node
-/// lies beyond, as with the flow's own mass.
+/// The erodible bed of a run, and the passes over it. Numbers of nodes are those of a full node. At walls half of the
+/// node lies beyond, as with the flow's own mass.
 class Erosion {
 public:
     /// Of a scene whose bed is erodible, or rock on which material is left behind.
@@ -36,9 +36,9 @@ public:
 
     /// Points gain, the bed loses, in a step of `dt` [s]; after the gather and the sort, before the deposit.
     ExchangeSums exchange(Flow& flow, double dt);
-    /// In the step that `now` has ended, points that have been at rest for long enough become bed: what the flow got by it,
-    /// below zero, or nothing where none did. After the gather, before anything comes in or points are sorted. The caller
-    /// drops those marked in gone().
+    /// In the step that `now` has ended, points that have been at rest for long enough become bed. Returns what the
+    /// flow got by it, below zero, or nothing where none did. After the gather, before anything comes in or points are
+    /// sorted. The caller drops those marked in gone().
     std::optional<ExchangeSums> settle(Flow& flow, const Status& now);
     const std::vector<std::uint8_t>& gone() const { return gone_; }
     /// What trees take of the flow in a step of `dt` [s]; after the exchange, before the deposit. Sums are those of the flow:
@@ -59,7 +59,8 @@ public:
     bool has_changed(Index tile) const { return changed_[tile] != 0; }
     /// Those with nodes that have got a deposit in this step.
     const std::vector<Index>& raised_tiles() const { return raised_tiles_; }
-    /// The ledger, and the bed where it has changed; aside those that a step may change, which reaches the tiles `reached`.
+    /// The ledger, and the bed where it has changed. Aside, it is those that a step may change, which reaches the tiles
+    /// `reached`.
     void serialize(Archive& archive, Flow& flow, const std::vector<Index>& reached);
     /// Ledger and bed of a run on a part of this grid; its node (0, 0) is (east, north) here.
     void take_over(const Erosion& from, const Flow& old, Flow& flow, Index east, Index north);
@@ -177,11 +178,11 @@ private:
     LazyArray<NodeGroups> in_reach_;     ///< the same by tile, of `nodes_`
     LazyArray<double> tile_energy_;      ///< [J]
     LazyArray<double> rows_;             ///< scratch of smooth_into_path; zero outside of it [m]
-    bool scarce_ = false;                ///< some node has less than is wanted of it
+    bool scarce_ = false;                ///< some node has less than is demanded of it
     Array wanted_;                       ///< of points; in the end what they get [kg]
     Array missed_;                       ///< of it, for their poorest nodes' sake; when something is scarce [kg]
     Array speed_;                        ///< along the bed [m/s]
-    Array from_x_, from_y_;              ///< where points that want something were before they were set back [cells]
+    Array from_x_, from_y_;              ///< where points with a demand were before they were set back [cells]
     Array braked_;                       ///< share of the speed that friction takes in the step [1]
     CompensatedSum eroded_, deposited_, energy_;
     double initial_mass_ = 0.0, mass_ = 0.0, deepest_ = 0.0;

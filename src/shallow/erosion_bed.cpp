@@ -1,4 +1,4 @@
-// The bed that a flow feels follows what was taken and left: slopes, the smoothed bed, its curvature (THEORY.md, section 18).
+// The bed of a flow follows what was taken and left (THEORY.md, section 18): slopes, the smoothed bed, its curvature.
 #include <algorithm>
 #include <cmath>
 
@@ -125,7 +125,8 @@ void Erosion::list_reached(const TileGrid& grid, Index far) {
     }
 }
 
-/// Slopes where z is not what it was, curvature where the smoothed bed is not, of tiles that have been taken up again.
+/// Slopes where z is not what it was, curvature where the smoothed bed is not. They are of tiles that have been
+/// restored.
 void Erosion::refresh_taken_up(Flow& flow, const std::vector<Index>& tiles, const std::vector<std::uint8_t>& bent) {
     for (const Index tile : tiles) marked_[static_cast<std::size_t>(tile)] = !moved_[tile].empty();
     refresh_moved(flow, tiles);

@@ -1,4 +1,5 @@
-// An erodible bed on a larger part of the terrain: its ledger, and the bed where it is no more as the elevation model has it.
+// An erodible bed on a larger part of the terrain. It has its ledger, and the bed where it is no more as the elevation
+// model has it.
 #include "shallow/erosion.h"
 
 namespace frana {
@@ -45,7 +46,7 @@ std::vector<Erosion::SharedNode> Erosion::changed_nodes(const Flow& flow, const 
 }
 
 void Erosion::take_node(const Erosion& from, const Flow& old, Flow& flow, const SharedNode& node) {
-    // Not what it had at the start: a run that is resumed knows that only as it was read for this part.
+    // Not what it had at the start: a resumed run has that only as it was read for this part.
     left_[node.to] = from.left_[node.from];
     if (deposits_) fresh_[node.to] = from.fresh_[node.from];
     if (!evolves_) return;

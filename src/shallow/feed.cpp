@@ -14,7 +14,7 @@ double time_for(double way, double v, double dv) {
     return square >= 0.0 && sum > 0.0 ? 2.0 * way / sum : std::numeric_limits<double>::infinity();
 }
 
-/// Over an area the depth that has come goes on as the flow does through a line: a row is complete with its layer.
+/// Over an area the depth that has come goes on as the flow does through a line. A row is complete with its layer.
 Inflow as_way(const Inflow& area) {
     Inflow of = area;
     of.area = 0.0, of.spacing = area.layer, of.speed.clear();

@@ -19,7 +19,7 @@ struct InflowRow {
     double before = 0.0;     ///< way that the flow had gone on until then [m]
 };
 
-/// The rows of a whole table that bring something, in the order of their times; the last one brings what is left.
+/// The rows of a whole table that bring something, in the order of their times. The last one brings what is left.
 std::vector<InflowRow> rows_of(const Inflow& inflow);
 
 class Feed {
@@ -43,8 +43,8 @@ public:
     /// Those of all rows complete by `time`, as they stand at that time.
     const Columns& take(double time);
 
-    /// Those that follow, as they would stand up to `reach` [m] behind the lines by a flow that is the same all along; none of
-    /// an inflow that has not begun.
+    /// Those that follow, as they would stand up to `reach` [m] behind the lines, in a flow that stays the same.
+    /// None of an inflow that has not begun.
     const Seeds& behind(double time, double reach);
 
     /// Volume that should have come in so far: of the tables, up to the last row of each [m3].

@@ -17,7 +17,7 @@ namespace frana {
 /// Up to four sums of one tile.
 using TileSums = std::array<double, 4>;
 
-/// What the phases need to know of a scene, besides its bed.
+/// What the phases need of a scene, besides its bed.
 struct FlowSetup {
     GridGeometry grid;
     double density;   ///< [kg/m^3]
@@ -73,12 +73,12 @@ struct Flow {
     Scheme scheme;
     /// Of what affine points carry beyond the nodes' motion, the share that the next gather leaves them; less of flip [1].
     double carried_share = 0.0;
-    /// Whether nodes store what friction leaves of velocities: points that keep some of their own ask for it.
+    /// Whether nodes store what friction leaves of velocities: points that retain some of their own need it.
     bool keeps_shares() const { return carried_share > 0.0 || scheme.transfer == Transfer::flip; }
-    /// Per tile of the domain, good for tiles of the work list: what the points of the last deposit touched, the only nodes
-    /// with material. Stale elsewhere; deposits are cleared by it.
+    /// Per tile of the domain, good for tiles of the work list. It is what the points of the last deposit reached, the
+    /// only nodes with material. Stale elsewhere; deposits are cleared by it.
     LazyArray<NodeGroups> in_reach;
-    /// The same grown by three nodes, as far as passes look: these nodes, and no others, hold what a dry node holds.
+    /// The same grown by three nodes, as far as passes read. These nodes, and no others, hold what a dry node holds.
     LazyArray<NodeGroups> near;
     LazyArray<TileReach> reach;                    ///< what the points of each tile touch
     std::vector<Index> shore;                      ///< tiles of the work list that have margin nodes (mark_margin)
@@ -93,7 +93,7 @@ struct Flow {
         return [this](Index tile) { return active_nodes(tile); };
     }
     StencilMarks marks_of(Index tile) const { return {grid.tile_i(tile) + kTile, grid.tile_j(tile) + kTile}; }
-    /// Whether a node was touched.
+    /// Whether a node is in reach.
     bool is_in_reach(Index i, Index j) const {
         const Index tile = grid.tile_of_node(i, j);
         return active.in_work[tile] && (in_reach[tile] & group_of((i + kTile) % kTile, (j + kTile) % kTile));
@@ -123,9 +123,9 @@ void for_each_node_of(const TileGrid& grid, Index tile, Body&& body) {
     }
 }
 
-/// Calls body(ghost, mirror) for the node pairs on both ends of one axis (0: x, 1: y), layers `first` to kGhosts;
-/// layer 0 is the wall node with itself. Only near material, and only where the ghosts' tile is near material too
-/// (elsewhere they hold what an earlier step left); serial, since a side has few nodes.
+/// Calls body(ghost, mirror) for the node pairs on both ends of one axis (0: x, 1: y), layers `first` to kGhosts. Layer
+/// 0 is the wall node with itself. Only near material, and only where the ghosts' tile is near material too. (Elsewhere
+/// they hold what an earlier step left.) Serial, since a side has few nodes.
 template <class Body>
 void for_each_wall_pair(const Flow& flow, int axis, Index first, Body&& body) {
     const TileGrid& grid = flow.grid;

@@ -59,15 +59,15 @@ struct Updated {
     }
 };
 
-/// At the rim of a stencil mass vanishes faster than force: a node that has depth counts half of it at least, or a
-/// point's stress would drive it (and the time step) without bound.
+/// At the edge of a stencil mass vanishes faster than force. A node that has depth counts half of it at least.
+/// Otherwise a point's stress would drive it (and the time step) without bound.
 template <class Real>
 Real inertia_of(const Flow& flow, Real mass, Real depth) {
     return max(mass, 0.5 * flow.density * flow.area * depth);
 }
 
-/// Depth that a node's inertia is reckoned with. Linear shapes push a node as hard however little of a point's mass it
-/// gets, and depth goes with mass there: what lies on the nodes around counts too.
+/// Depth that a node's inertia is reckoned with. Linear shapes give a node as much force however little of a point's
+/// mass it gets. Depth goes with mass there. What lies on the nodes around counts too.
 template <class Real>
 Real resisting_depth(const Flow& flow, Index k) {
     Real depth = read<Real>(&flow.nodes.depth[k]);
@@ -130,8 +130,9 @@ public:
         return total;
     }
 
-    /// Were the pull stronger by a billionth, friction would hold it still. Where only a yield stress holds a node on a bent
-    /// bed, its gravity depends on the step (midpoint); the linearised pull does not grow with the slope alone: no promise.
+    /// Were the drive stronger by a billionth, friction would hold it still. Where only a yield stress holds a node on
+    /// a bent bed, its gravity depends on the step (midpoint). The linearised drive does not grow with the slope alone:
+    /// no promise.
     bool holds(const Flow& flow, Index tile) const override {
         if constexpr (Terrain::kLinearised) return false;
         constexpr double kFirm = 1.0 + 1e-9;
@@ -415,7 +416,8 @@ private:
     template <class Real, class Here>
     Updated<Real> braked(const BedStateOf<Real>& state, const Node<Real>& n, const Here& law, Real dx, Real dy, Real bx,
                          Real by, Real wave_gravity, double dt) const {
-        // A node that forces stopped has the share kept of the slowest, or round-off would decide what flip's points keep.
+        // A node that forces stopped has the share of the slowest. Otherwise round-off would decide what flip's points
+        // retain.
         const Real driven = max(sqrt(dx * dx + dy * dy), Real{} + kSlowest), unit = 1.0 / driven;
         const Real s0 = max(Real{}, (n.vx * dx + n.vy * dy) * unit);
         const BrakedOf<Real> braking{s0, driven, speeds_after(law, state, s0, driven, dt), dt, drift_};

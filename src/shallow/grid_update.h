@@ -19,7 +19,7 @@ class GridUpdateKernel {
 public:
     virtual ~GridUpdateKernel() = default;
     /// Velocities of all wet nodes after `dt` [s], from Nodes::before to Nodes::motion, for a drift that takes `drift`
-    /// [s]. Goes over the tiles that are active (rest.h). Only writes motion, and where it is (Rest::moving), so it may
+    /// [s]. Goes over the tiles that are active (rest.h). Only writes motion, and where it is (Rest::moving). So it may
     /// be repeated (output uses half a step and no drift).
     virtual GridUpdateSums update(Flow& flow, double dt, double drift) = 0;
     /// Whether the nodes of a tile, all at rest, would stay so in a grid update of any length.

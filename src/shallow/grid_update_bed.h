@@ -1,6 +1,6 @@
 #pragma once
-// The terrain under a grid update, at one node (Real: double) or four in a row (Double4): gentle or steep, curved or
-// not.
+// The terrain under a grid update, at one node (Real: double) or four in a row (Double4). It is gentle or steep, curved
+// or not.
 #include "base/simd.h"
 #include "shallow/flow.h"
 
@@ -25,7 +25,8 @@ struct Drive {
     Real x, y;
 };
 
-/// Slopes whose squares are far below this are smooth, whatever the ground around: what a bend there could turn is as small.
+/// Slopes whose squares are far below this are smooth, whatever the ground around. What a bend there could turn is as
+/// small.
 constexpr double kFlat = 0.01;
 /// Square of the round-off of a few operations, relative [1].
 constexpr double kRoundOff2 = 1e-28;
@@ -45,11 +46,11 @@ struct SteepBed {
         }
     }
     /// What a velocity (dx, dy) that climbs loses besides, in dt; `weight`: gravity() of the grid update. Where the bed
-    /// is smooth, v.H.v turns the velocity up a slope and the slope's own pull is 1/(1 + q) of gravity; together a
-    /// climb by z costs g z. A bend shorter than the curvature's length turns nothing: so much of the slope as the
-    /// smoothed bed does not have pulls with all of gravity, or a column would climb a bank of slope B at a cost of g z
-    /// / (1 + B^2). `at_front`, 1 at margins: the surface there is that of what lies behind, which a front leaves on
-    /// its way up such a bank; there the bed's slope counts. This stops a climb and turns none round.
+    /// is smooth, v.H.v turns the velocity up a slope. The slope's own acceleration is 1/(1 + q) of gravity. Together a
+    /// climb by z costs g z. A bend shorter than the curvature's length turns nothing. So the part of the slope that
+    /// the smoothed bed does not have acts with all of gravity. Otherwise a column would climb a step of slope B at a
+    /// cost of g z / (1 + B^2). `at_front`, 1 at margins: the surface there is that of what lies behind. A front leaves
+    /// that on its way up such a step. There the bed's slope counts. This stops a climb and turns none round.
     void climb(Real ex, Real ey, Real at_front, double g, Real weight, double dt, Real& dx, Real& dy) const {
         if constexpr (kCurvature != Curvature::none) {
             const Real zero{}, one = zero + 1.0, up = dx * ex + dy * ey, up_bed = dx * bx + dy * by;
@@ -79,16 +80,16 @@ struct SteepBed {
         return max(Real{}, g + vx * vx * hxx + 2.0 * vx * vy * hxy + vy * vy * hyy);
     }
     /// gravity(g, vx, vy) times `slope` (drive()), less where the flow is high against the bend. With k = v.H.v,
-    /// k * slope has two parts: k B / (1 + B^2) turns the velocity along the bed and does no work; the rest is k added
-    /// to the pressure. That works at -k v.grad(h) / (1 + q), of nothing: what takes it back is of second order in the
+    /// k * slope has two parts. k B / (1 + B^2) turns the velocity along the bed and does no work. The rest is k added
+    /// to the pressure. That works at -k v.grad(h) / (1 + q), of nothing. What takes it back is of second order in the
     /// depth times the bed's bend, and not in the model. From a column of that height down to its foot it gives v^2/2 a
-    /// share 2 |k| high / v^2. So the rest fades where the slope of the bed along the path changes by more than a quarter
-    /// within the depth, |k| high > v^2 / 4, and is gone at a half: half of v^2/2 at most. `high`: depth a cell around [m].
-    /// Where g + k is below 0 the flow would fly. It has no weight there, but it takes the slope of the bed all the same.
-    /// With its velocity along the map kept it would win energy by falling faster than what flies. It keeps its direction,
-    /// and a speed along the bed that gravity alone changes. (To turn it with the bed would do no work either, but pull a
-    /// flow that passes a spur uphill.) A climb counts by the smoothed bed: H is its bend, and a bank that only the raw
-    /// bed has may give no speed.
+    /// share 2 |k| high / v^2. So the rest fades where the bed's slope along the path changes by over a quarter within
+    /// the depth: |k| high > v^2 / 4. It is gone at a half: half of v^2/2 at most. `high`: depth a cell around [m].
+    /// Where g + k is below 0 the flow would fly. It has no weight there, but it takes the slope of the bed all the
+    /// same. If its velocity along the map stayed it would win energy by falling faster than what flies. Its direction
+    /// stays, and so does a speed along the bed that gravity alone changes. (To turn it with the bed would do no work
+    /// either, but draw a flow that passes a spur uphill.) A climb counts by the smoothed bed. H is its bend, and a
+    /// step in the bed that only the raw bed has may give no speed.
     Drive<Real> driving(const Drive<Real>& slope, double g, Real high, Real vx, Real vy, Real cosine) const {
         const Real weight = gravity(g, vx, vy);
         const Drive<Real> whole{weight * slope.x, weight * slope.y};
@@ -105,15 +106,15 @@ struct SteepBed {
         const Real held = flies * up / max(speed2 + w * w, Real{} + 1e-300);
         return {whole.x - lift * (slope.x - c2 * bx) + held * vx, whole.y - lift * (slope.y - c2 * by) + held * vy};
     }
-    /// Depth a cell away, up its gradient: what pushes a node at the foot of a column is the column. `ex`, `ey`: slope of the
-    /// free surface.
+    /// Depth a cell away, up its gradient. At the foot of a column the pressure on a node is the column's. `ex`, `ey`:
+    /// slope of the free surface.
     Real height_around(const Flow& flow, Real depth, Real ex, Real ey) const {
         return depth + flow.cell * (abs(ex - bx) + abs(ey - by));
     }
     /// grad(eta) / (1 + q), q = gradZ . grad(eta): a column that accelerates vertically with its bed. Where the surface
-    /// slopes against the bed (q < 0) that would grow without bound and make energy of nothing (at q = -1 the column would
-    /// weigh nothing): there the plain gradient. Linear:
-    /// c^2 (gradZ + grad h - c^2 gradZ (gradZ . grad h)), the first terms of its series in grad h.
+    /// slopes against the bed (q < 0) that would grow without bound and make energy of nothing. There it is the plain
+    /// gradient. At q = -1 the column would have no weight. Linear: c^2 (gradZ + grad h - c^2 gradZ (gradZ .
+    /// grad h)), the first terms of its series in grad h.
     Drive<Real> drive(Real ex, Real ey, Real cosine) const {
         if constexpr (kLinear) {
             const Real c2 = cosine * cosine, hx = ex - bx, hy = ey - by, along = c2 * (bx * hx + by * hy);

@@ -36,7 +36,7 @@ private:
     Double4 across_[3];
 };
 
-/// What the bed law sees below four points, and their speed along it; on gentle ground that of the map.
+/// The bed law's input below four points, and their speed along it; on gentle ground that of the map.
 struct GroundOfFour {
     BedStateOf<Double4> below;
     Double4 speed;

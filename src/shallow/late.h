@@ -18,7 +18,7 @@ public:
     /// When the next one enters by its time [s]; infinite: none.
     double next() const;
 
-    /// Those that enter at `time` [s], in the order of the case: their time has come, or `reached(i, j)` holds for a
+    /// Those that enter at `time` [s], in the order of the case. Their time has come, or `reached(i, j)` holds for a
     /// node in whose cell they have particles. They count as entered from now on.
     template <class Reached>
     const std::vector<const LateRelease*>& enter(double time, Reached&& reached) {
@@ -40,7 +40,7 @@ public:
     /// Volume of those that entered [m3].
     double entered_volume() const;
     std::vector<LateEntry> entries() const;
-    /// Adds the tiles that the particles still to come lie in or beside; a tile may come more than once.
+    /// Adds the tiles that the particles still to come lie in, and the adjacent ones. A tile may come more than once.
     void add_tiles_to_come(std::vector<Index>& tiles) const;
 
     void serialize(Archive& archive);
@@ -51,7 +51,7 @@ private:
     struct Entry {
         LateRelease release;
         std::vector<std::array<Index, 2>> nodes;  ///< in whose cells it has particles; of those with a time none
-        std::vector<Index> tiles = {};            ///< that its particles lie in or beside
+        std::vector<Index> tiles = {};            ///< that its particles lie in, and adjacent ones
         double entered = kNotYet;                 ///< [s]
     };
     template <class Reached>

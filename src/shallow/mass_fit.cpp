@@ -18,7 +18,7 @@ struct Reach {
     double weight[kMost];
 };
 
-/// Node index with walls mirrored; wall nodes count their own image too.
+/// Node index with walls mirrored; wall nodes count their own mirror part too.
 struct Folded {
     Index k;
     double factor;
@@ -113,7 +113,7 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 /// Conjugate gradients for (B W B^T) y = rhs, to round-off or 1000 iterations. Rows that no point with weight reaches are
-/// left out; more rows than such points may have no solution, then the best so far counts. Returns the iterations.
+/// left out. More rows than such points may have no solution, then the best so far counts. Returns the iterations.
 Index solve(const FitSystem& system, const std::vector<double>& weight, std::vector<double> residual,
             std::vector<double>& y) {
     std::vector<double> change, applied;
@@ -224,7 +224,7 @@ MassFit fit_masses(Flow& flow, double level) {
         ++round;
         deposit_columns(flow);
         mark_margin(flow);
-        // A margin node that would stand below the level pulls the surface down (the margin takes a minimum).
+        // A margin node that would stand below the level lowers the surface (the margin takes a minimum).
         if (gather_rows(true, level - 1e-13 * std::max(1.0, std::abs(level))) == 0) break;
     }
     fit.rows = static_cast<Index>(rows.size());

@@ -15,10 +15,10 @@ struct MassFit {
 /// Largest distance of the free surface, margins included, from `level` on the wet nodes of the domain [m].
 double off_level(const Flow& flow, double level);
 
-/// THEORY (58): changes the points' masses so that depth + bed equals `level` [m] on the wet nodes: a lake that starts
-/// at exact rest, wherever the points stand. Least change, weighted by mass: m = m0 + W B^T y, (B W B^T) y = t - B m0
-/// with B the deposit (sub-points and walls included), by conjugate gradients. Nodes whose surface is extrapolated from
-/// inside are left free unless they would end below the level. Sorts must have been done; rheology plays no part.
+/// THEORY (58): changes the points' masses so that depth + bed equals `level` [m] on the wet nodes. It is a lake that
+/// starts at exact rest, wherever the points stand. Least change, weighted by mass: m = m0 + W B^T y, (B W B^T) y = t -
+/// B m0, by conjugate gradients. B is the deposit (sub-points and walls included). Nodes whose surface is extrapolated
+/// from inside are left free unless they would end below the level. Sorts must have been done; rheology plays no part.
 MassFit fit_masses(Flow& flow, double level);
 
 }  // namespace frana

@@ -17,11 +17,12 @@ constexpr Index kSide = 2 * kTile;  ///< half-cell squares along a tile's edge
 constexpr Index kMostCompared = 64;
 /// Quarters of quarters so deep at most; what is crowded still is compared in part.
 constexpr int kDeepest = 10;
-/// A point so near to a square's edge [half cells] is in no square: round-off must not choose one, or mirror images part.
+/// A point so near to a square's edge [half cells] is in no square. Round-off must not choose one, or mirror particles
+/// part.
 constexpr double kEdge = 1e-6;
 /// Unions whose costs differ by less than this share tie, for the same reason.
 constexpr double kTie = 1e-6;
-/// A union is at most so many times as heavy as a square's mean point; 2, and what round-off may add.
+/// A union is at most so many times as heavy as a square's mean point. 2, and what round-off may add.
 constexpr double kHeaviest = 2.0 + 1e-6;
 /// A union shorter than this share of the splitting length will not split at once.
 constexpr double kNoResplit = 0.95;
@@ -101,7 +102,7 @@ struct Pick {
 };
 
 /// The cheapest union among `count` points, nothing when two tie. None is heavier than two points of their mean. Light
-/// neighbours are cheap: without that limit the heaviest takes in one after the other, and goes on as a lump.
+/// neighbours are cheap. Without that limit the heaviest takes in one after the other, and goes on as a lump.
 Pick cheapest(const Columns& c, const std::int32_t* points, Index count) {
     double heaviest = 0.0;
     for (Index m = 0; m < count; ++m) heaviest += c.mass[points[m]];
@@ -123,9 +124,9 @@ Pick cheapest(const Columns& c, const std::int32_t* points, Index count) {
     return second <= best * (1.0 + kTie) ? Pick{} : pick;
 }
 
-/// Calls body(points, count) for a square, or for those parts of a crowded one that hold more than their share of
-/// `most` points, and sums what it returns. Parts are places: were a crowd cut off in the order it is stored in, mirror
-/// images would part.
+/// Calls body(points, count) for a square. Of a crowded one it takes those parts that hold more than their share of
+/// `most` points. Sums what it returns. Parts are places: were a crowd cut off in the order it is stored in, mirror
+/// particles would part.
 template <class Body>
 Index in_parts(const Columns& c, const Square& square, std::int32_t* points, Index count, Index most, Body&& body) {
     if (count <= kMostCompared || square.depth == kDeepest) return body(points, count);
@@ -211,7 +212,7 @@ template <class Real>
 bool Merger::unite(Flow& flow, Index a, Index b, double longest, std::vector<std::uint8_t>& gone) {
     Columns& c = flow.columns;
     Carried<Real>& held = c.carried<Real>();
-    if (c.mass[b] > c.mass[a]) std::swap(a, b);  // the heavier one keeps its id
+    if (c.mass[b] > c.mass[a]) std::swap(a, b);  // the id is that of the heavier one
     const double mass = c.mass[a] + c.mass[b], fa = c.mass[a] / mass, fb = c.mass[b] / mass;
     const double dx = c.x[b] - c.x[a], dy = c.y[b] - c.y[a];
     Moments moments;

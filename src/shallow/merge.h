@@ -12,11 +12,11 @@ public:
     Index most() const { return most_; }  ///< points that such a square may hold
     /// Of points at the places of seeds, how many such a square holds at most.
     static Index most_of(const Seeds& seeds, const GridGeometry& grid);
-    /// In every half-cell square with more points than that, the two whose union adds least to the second moments
-    /// (m_a m_b / (m_a + m_b) |x_a - x_b|^2; Ward 1963) become one: mass, place, velocity and its gradient are the
-    /// mass-weighted means, the domain is the rectangle with the union's second moments. Mass and momentum are kept
-    /// exactly. No union when its domain would be nearly long enough to split again. Where two unions
-    /// tie, none is made: round-off must not choose, or mirror images part. A crowd (more than 64 points) is thinned in
+    /// In every half-cell square with more points than that, two become one. They are those whose union adds least to
+    /// the second moments (m_a m_b / (m_a + m_b) |x_a - x_b|^2; Ward 1963). Mass, place, velocity and its gradient are
+    /// the mass-weighted means. The domain is the rectangle with the union's second moments. Mass and momentum are
+    /// conserved exactly. No union when its domain would be nearly long enough to split again. Where two unions tie,
+    /// none is made: round-off must not choose, or mirror particles part. A crowd (more than 64 points) is thinned in
     /// each quarter of its square.
     /// Needs tiles that are up to date; `sorted`: the point at each place of them (TileSorter::order). Marks merged-away
     /// points in `gone` (resized); returns how many. The caller drops them.

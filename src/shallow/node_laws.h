@@ -1,5 +1,5 @@
 #pragma once
-// Bed laws that differ from node to node (THEORY.md, section 19), for kernels that take one node or four at once.
+// Spatially varying bed laws (THEORY.md, section 19), for kernels that take one node or four at once.
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -23,7 +23,7 @@ struct NodeLaws {
 /// In a kernel: each node has a law of its own, instead of one for all.
 struct LawOfEachNode {};
 
-/// The law of a node, or those of four in a row: what a kernel asks of a law.
+/// The law of a node, or those of four in a row: what a kernel calls of a law.
 template <class Real>
 struct LawsHere;
 
@@ -62,7 +62,7 @@ struct LawsHere<Double4> {
 }
 double speeds_after(const LawsHere<double>& here, const BedState& bed, double s0, double driven, double dt);
 
-/// What a kernel asks of its law at node k, or at four from there on. `laws` is there for LawOfEachNode.
+/// What a kernel calls of its law at node k, or at four from there on. `laws` is there for LawOfEachNode.
 template <class Real, class Law>
 [[gnu::always_inline]] inline decltype(auto) law_at(const Law& law, const std::optional<NodeLaws>& laws, Index k) {
     if constexpr (std::is_same_v<Law, LawOfEachNode>)

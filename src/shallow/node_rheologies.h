@@ -26,7 +26,7 @@ struct NodeRheologies {
 /// In a kernel: each node has a rheology of its own, instead of one for all.
 struct RheologyOfEachNode {};
 
-/// The rheology that points have: what a kernel asks of it, the same for one law and for many. Positions in cells.
+/// The rheology that points have: what a kernel calls of it, the same for one law and for many. Positions in cells.
 template <class Law>
 struct OneForAll {
     const Law& law;

@@ -85,7 +85,7 @@ struct Nodes {
     LazyArray<std::uint8_t> row_known;  ///< 1: the wave in x is known there
     LazyArray<Pair> before;             ///< momentum / mass, before the grid update [m/s]
     LazyArray<Motion> motion;
-    LazyArray<double> velocity_share;  ///< share of the velocity that friction left; only where points keep some [1]
+    LazyArray<double> velocity_share;  ///< share of the velocity that friction left; only where points retain some [1]
     LazyArray<Pair> viscous_flux;      ///< artificial viscosity through the faces towards +x and +y [m^3/s^2]
     LazyArray<Pair> lateral;           ///< acceleration by the lateral drag; used only when the scheme has one [m/s^2]
     LazyArray<Pair> shock;             ///< sensor of those two faces, 0 (smooth) to 1 (bore) [1]

@@ -3,7 +3,7 @@
 
 namespace frana {
 
-/// What every node ever saw, updated after each step on nodes near material only.
+/// Peaks of every node, updated after each step on nodes near material only.
 struct Peaks {
     LazyArray<double> depth;     ///< [m]
     LazyArray<double> speed;     ///< along the smoothed bed, where deeper than a tenth of the footprint depth [m/s]
@@ -26,8 +26,8 @@ struct Peaks {
 };
 
 /// THEORY (59): speed along the bed and normal pressure on it at a node, from the velocity (vx, vy) there. Both by the
-/// bed smoothed to `curvature_length`: a column slides over the roughness of single cells, it does not jump up and down
-/// with them. By the raw slope the speed would grow with every finer cell.
+/// bed smoothed to `curvature_length`. A column slides over the roughness of single cells, and does not jump up and
+/// down with them. By the raw slope the speed would grow with every finer cell.
 struct BedContact {
     double speed, pressure;
 };

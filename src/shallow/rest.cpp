@@ -17,7 +17,7 @@ void for_each_around(const Flow& flow, Index tile, Body&& body) {
     });
 }
 
-/// Whether a tile has nodes that walls mirror, or ghosts: these are always taken to be touched.
+/// Whether a tile has nodes that walls mirror, or ghosts: these always count as in reach.
 bool at_wall(const Flow& flow, Index tile) {
     const auto along = [](Index first, Index nodes) {
         const auto holds = [&](Index wall) { return first <= wall + kGhosts && first + kTile > wall - kGhosts; };
@@ -56,7 +56,7 @@ void mark_stencils(Flow& flow, Index n, int before, int after) {
     flow.reach[tile] = marks.reach(before, after);
 }
 
-/// What the deposits of tiles awake will change: what they touched, and what they touch now.
+/// What the deposits of tiles awake will change: what they reached, and what they reach now.
 void find_changes(Flow& flow, int before, int after) {
     Rest& rest = flow.rest;
     for (const Index tile : flow.active.work) {

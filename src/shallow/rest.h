@@ -1,12 +1,14 @@
 #pragma once
-// Material at rest sleeps, tile by tile: what cannot change is not computed again, and the run has the same bits.
+// Material at rest sleeps, tile by tile. What cannot change is not computed again, and the run has the same bits.
 //
-// A tile sleeps when kAsleep gathers (mpm/tile_grid.h) in a row found all its points without velocity and gradient, and
-// splitting and merging, which come every few steps, have found nothing to do there since: its points then stay as they
-// are, and so does what they deposit. While any tile sleeps, a step goes over
-// - the points of tiles awake and of tiles that touch a node in motion or deposited anew (`gathers`),
-// - the points of tiles that touch a node which a tile awake touches (`deposits`): its sums are made again, in their order,
-// - the nodes near such nodes (`active`). All others keep what they had, and sums over tiles count them as they are.
+// A tile sleeps when kAsleep gathers (mpm/tile_grid.h) in a row found all its points without velocity and gradient.
+// Splitting and merging, which come every few steps, must have found nothing to do there since. Its points then stay as
+// they are, and so does what they deposit. While any tile sleeps, a step goes over
+// - the points of tiles awake and of tiles that reach a node in motion or deposited anew (`gathers`),
+// - the points of tiles that reach a node which a tile awake reaches (`deposits`): its sums are made again, in their
+//   order,
+// - the nodes near such nodes (`active`).
+// All others stay as they were, and sums over tiles count them as they are.
 #include <vector>
 
 #include "mpm/node_groups.h"
@@ -50,10 +52,10 @@ void choose_gathers(Flow& flow);
 /// After the gather of the n-th tile: whether all its points are at rest.
 void note_rest(Flow& flow, Index n, bool at_rest);
 
-/// After a gather, before points change tiles: what tiles awake had touched will change.
+/// After a gather, before points change tiles: what tiles awake had in reach will change.
 void note_changed(Flow& flow);
 
-/// Between a gather and the next deposit: a tile's points will not stay as they are, and what they have touched will change.
+/// Between a gather and the next deposit. A tile's points will not stay as they are, and what they reached will change.
 void wake(Flow& flow, Index tile);
 
 /// Whether tiles sleep at this moment.
@@ -66,12 +68,12 @@ void start_deposit(Flow& flow, int before, int after);
 /// After a deposit: puts back what was put aside, and marks nodes in reach and near (Flow).
 void finish_deposit(Flow& flow);
 
-/// Before the passes over nodes: which tiles they walk. A change is felt 15 nodes away at most (2 by the margin's
-/// flags, 2 more by the filter, 3 by each of three sweeps along the shore, 2 by the grid update), that is in the next
-/// tile. A tile that falls still is left only when friction holds it whatever the length of a step.
+/// Before the passes over nodes: which tiles they visit. A change is felt 15 nodes away at most, that is in the next
+/// tile. (The margin's flags make 2, the filter 2, each of three sweeps along the shore 3, the grid update 2.) A
+/// tile that falls still is left only when friction holds it whatever the length of a step.
 void choose_active(Flow& flow, const GridUpdateKernel& grid_update);
 
-/// What follows from Flow::in_reach when nothing sleeps: which nodes are near, and that passes walk all tiles.
+/// What follows from Flow::in_reach when nothing sleeps: which nodes are near, and that passes visit all tiles.
 void activate_all(Flow& flow);
 
 /// Takes all nodes of the work list for in reach and active.

@@ -7,8 +7,8 @@
 
 namespace frana {
 
-/// A node rests in a step when material lies on it and the grid update left it no more velocity than counts as rest, whatever
-/// comes in from what moves next to it. Clocks run for nodes in reach; elsewhere they stand at 0.
+/// A node with material rests in a step when the grid update left it only velocity that counts as rest.
+/// That is so whatever comes in from what moves next to it. Clocks run for nodes in reach; elsewhere they stand at 0.
 class RestClocks {
 public:
     RestClocks() = default;

@@ -12,7 +12,7 @@ struct FourMotions {
 };
 
 /// What a point brings to its three by three nodes. A node's momentum is wx wy (b + i qx + j qy), its force
-/// sx wy fx + wx sy fy: both are one product of wx with a vector of the row, and one of {i wx, sx} with another.
+/// sx wy fx + wx sy fy. Both are one product of wx with a vector of the row, and one of {i wx, sx} with another.
 struct Brought {
     Double4 base, along_x, along_y;  ///< {b, fy}, {qx, fx}, {qy, 0}
     Double4 mass;                    ///< of a row, times wx
@@ -21,8 +21,8 @@ struct Brought {
     Double4 unused;                  ///< 256 bytes: a lane's address is a shift
 };
 
-/// Mass, momentum and the force -V sigma grad N, the weak form of div(h sigma) (Fois et al. 2024, eq. 21), of four
-/// points. `internal_force`: V sigma / cell [N].
+/// Mass, momentum and the force -V sigma grad N of four points. The force is the weak form of div(h sigma) (Fois et al.
+/// 2024, eq. 21). `internal_force`: V sigma / cell [N].
 [[gnu::always_inline]] inline void scatter_four(Nodes& nodes, Index stride, int lanes, const Stencils& sx,
                                                 const Stencils& sy, const FourMotions& q,
                                                 const PlaneOf<Double4>& internal_force) {

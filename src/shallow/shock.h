@@ -6,11 +6,11 @@
 
 namespace frana {
 
-/// THEORY (27), (28): momentum fluxes of the limited artificial viscosity through the faces of each node towards +x
-/// (for vx) and +y (for vy) [m^3/s^2], and the shock sensor [0, 1]. Acts in compression only, zero for linear
-/// velocities: per face with velocity jump d < 0, depth h (harmonic mean) and c = sqrt(g h), e = |d| (1 - limiter),
-/// flux = h e (c1 c + c2 e). The limiter fades out where |d| exceeds scheme.shock_gate * c, so that the middle of a
-/// bore is not mistaken for a smooth velocity; the sensor grows from e = kap c to 2 kap c, kap = scheme.shock_sensor.
+/// THEORY (27), (28): momentum fluxes of the limited artificial viscosity [m^3/s^2], and the shock sensor [0, 1]. The
+/// fluxes go through the faces of each node towards +x (for vx) and +y (for vy). Acts in compression only, zero for
+/// linear velocities. Per face with velocity jump d < 0, depth h (harmonic mean) and c = sqrt(g h): e = |d| (1 -
+/// limiter), flux = h e (c1 c + c2 e). The limiter fades out where |d| exceeds scheme.shock_gate * c. So the middle of
+/// a bore is not mistaken for a smooth velocity. The sensor grows from e = kap c to 2 kap c, kap = scheme.shock_sensor.
 /// Needs depth, flags and velocity before the grid update. Does nothing when the scheme has no viscosity.
 void shock_pass(Flow& flow);
 

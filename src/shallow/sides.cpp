@@ -26,8 +26,9 @@ double leave(const Flow& flow, Index p, Index k, PointSums& sums) {
 
 namespace {
 
-/// A point on a wall is its own mirror image: it has no speed across, and its domain does not lean. With FLIP it may have come
-/// there with a speed of its own, which would change its sign each step, at one of two opposite walls only: 29 - 1e-19 is 29.
+/// A point on a wall is its own mirror particle. It has no speed across, and its domain does not lean. With FLIP it may
+/// have come there with a speed of its own. That would change its sign each step, at one of two opposite walls only: 29
+/// - 1e-19 is 29.
 template <class Real>
 void settle_on_walls(Flow& flow, Index p, double x_max, double y_max) {
     Columns& c = flow.columns;
@@ -48,9 +49,9 @@ void settle_on_walls(Flow& flow, Index p, double x_max, double y_max) {
     set_edges(held, p, rectangle_of(moments));
 }
 
-/// A point that comes to node (i, j) of a wall in a hole goes back over the nearest edge of the node's pixel beyond which there
-/// is no wall, as far as it came, and keeps no speed against that edge. The wall's height alone would not hold the foremost.
-/// Returns how far it was set back [cells].
+/// A point at node (i, j) of a wall in a hole goes back over an edge of the node's pixel. It is the nearest
+/// edge beyond which there is no wall. It goes back as far as it came, and has no speed against that edge. The wall's
+/// height alone would not hold the foremost. Returns how far it was set back [cells].
 template <class Real>
 double stay_out(Flow& flow, Index p, Index i, Index j, PointSums& sums) {
     Columns& c = flow.columns;

@@ -5,8 +5,8 @@
 
 namespace frana {
 
-/// THEORY, section 11. A point that takes up bed gains mass, not width: alone in its front it would gather all that lies on its
-/// way, and one point cannot spread. It becomes as wide as its mass is at the depth around it, and splits.
+/// THEORY, section 11. A point that takes up bed gains mass, not width. Alone in its front it would gather all that
+/// lies on its way, and one point cannot spread. It becomes as wide as its mass is at the depth around it, and splits.
 template <class Real>
 void Splitter::widen_grown(Flow& flow) const {
     constexpr double kCrowded = 4.0;  // at margins the depth at a point is a half or a quarter of its own

@@ -12,7 +12,7 @@
 namespace frana {
 namespace {
 
-/// Ghost nodes beyond walls take the surface, depth and wetness of their mirror images.
+/// Ghost nodes beyond walls take the surface, depth and wetness of their mirror nodes.
 void mirror_surface(Flow& flow) {
     if (!flow.walls) return;
     Nodes& nodes = flow.nodes;
@@ -37,8 +37,8 @@ void mirror_velocity(Flow& flow) {
         });
 }
 
-/// Wetness of a tile and two nodes around it: one bit a node, bit n + 2 of row n + 2 is node (n, n). Right in rows two or
-/// fewer from a touched node, empty elsewhere.
+/// Wetness of a tile and two nodes around it. There is one bit a node, and bit n + 2 of row n + 2 is node (n, n). Right
+/// in rows two or fewer from a node in reach, empty elsewhere.
 struct WetRows {
     std::uint32_t row[kTile + 4] = {};
     WetRows(const Flow& flow, Index tile) {
@@ -65,8 +65,8 @@ std::uint32_t nodes_in(NodeGroups groups) {
 
 constexpr int kSweeps = 3;  ///< a ragged shore is flagged three nodes deep
 
-/// How much of the ground around a node stands above `level`, averaged as the bed is: by so much a surface at that
-/// level comes out too high there, at most (the ground is taken at nodes: Jensen). Linear shapes: no bound.
+/// How much of the ground around a node stands above `level`, averaged as the bed is. A surface at that level comes out
+/// too high there by so much at most. (The ground is taken at nodes: Jensen.) Linear shapes: no bound.
 double emerging(const Flow& flow, Index k, double level) {
     const auto& w = flow.bed.averaging;
     if (w[0] == 1.0) return std::numeric_limits<double>::infinity();
@@ -78,9 +78,9 @@ double emerging(const Flow& flow, Index k, double level) {
     return sum;
 }
 
-/// What a film adds to the line through its surface at p and q when that is continued to k: it bends as the ground does. Of a
-/// film only, on ground that bends by more than it is deep: on what a grid resolves waves are linear at shores. Nothing where
-/// the ground from q to p is next to level, as on a crest: a lake is as level there as a film.
+/// What a film adds to the line through its surface at p and q when that is continued to k. It bends as the ground
+/// does. Of a film only, on ground that bends by more than it is deep. On what a grid resolves waves are linear at
+/// shores. Nothing where the ground from q to p is next to level, as on a crest. A lake is as level there as a film.
 double film_bend(const Flow& flow, Index k, Index p, Index q) {
     const double bend = flow.bed.z[k] - 2.0 * flow.bed.z[p] + flow.bed.z[q],
                  depth = std::max(flow.nodes.depth[p], flow.nodes.depth[q]);
@@ -101,7 +101,7 @@ std::uint32_t bits_of(std::uint64_t bytes) {
     return static_cast<std::uint32_t>((bytes & kEachByte) * 0x0102040810204080 >> 56);
 }
 
-/// Which of eight nodes are known before a sweep: wet, and not of the margin or found by an earlier sweep.
+/// Which of eight nodes are known before a sweep. They are wet, and not of the margin or found by an earlier sweep.
 std::uint32_t known_of(std::uint64_t flags, int sweep) {
     const std::uint64_t margin = flags >> 1, odd = flags >> 6, even = flags >> 7;  // sweeps 1 and 3; 2 and 3
     std::uint64_t found = 0;
@@ -131,8 +131,8 @@ struct UnknownRows {
     }
 };
 
-/// Nodes of a tile and three around it that are known before a sweep: bit i + 8 of row j + 3 is node (i, j). Valid within
-/// three nodes of one of `unknown`, along known nodes; elsewhere bits mean nothing.
+/// Nodes of a tile and three around it that are known before a sweep. Bit i + 8 of row j + 3 is node (i, j). Valid
+/// within three nodes of one of `unknown`, along known nodes; elsewhere bits mean nothing.
 struct KnownRows {
     std::uint32_t row[kTile + 6] = {};
     KnownRows(const Flow& flow, Index tile, int sweep, const UnknownRows& unknown) {
@@ -173,9 +173,9 @@ double resting(const Pair& velocity, double creeps) {
 bool extrapolate(const Flow& flow, Index k, Index i, Index j, const KnownRows& known, double creeps, double& value) {
     const Nodes& nodes = flow.nodes;
     const Index up = flow.grid.stride();
-    // The flank of what rests bends down to the level at most: bent on under the ground, it would be steeper than it is
-    // anywhere and pull the pile apart. (Not to the bed itself, or a dry neighbour as high would be a shore by round-off.)
-    // A front in motion has a tip that bends so. Between the two not at once, or round-off would choose.
+    // The flank of what rests bends down to the level at most. Bent on under the ground, it would be steeper than it is
+    // anywhere and drive the pile apart. (Not to the bed itself, or a dry neighbour as high would be a shore by
+    // round-off.) A front in motion has a tip that bends so. Between the two not at once, or round-off would choose.
     const double rests = resting(nodes.before[k], creeps);
     double sum = 0.0, weights = 0.0;
     for (Index dj = -1; dj <= 1; ++dj)
@@ -200,7 +200,7 @@ bool extrapolate(const Flow& flow, Index k, Index i, Index j, const KnownRows& k
     const double level = nodes.level[k];
     if (value >= level)
         value = level;
-    else  // a heap stays seen
+    else  // a heap stays visible
         value = std::max(value, level - emerging(flow, k, value) - (value - flow.bed.z_min[k]));
     return true;
 }
@@ -228,8 +228,8 @@ void shoreline_sweep(Flow& flow, int number) {
     }
 }
 
-/// Nodes of a tile that are wet and not of the margin, and so are two each way: bit i of row j is node (i, j). Rows far from
-/// all of the groups are not set.
+/// Nodes of a tile that are wet and not of the margin, and so are two each way. Bit i of row j is node (i, j). Rows far
+/// from all of the groups are not set.
 struct InnerRows {
     std::uint32_t along_x[kTile] = {}, along_y[kTile] = {};
     InnerRows(const Flow& flow, Index tile, NodeGroups groups) {
@@ -286,18 +286,18 @@ bool calm(const Nodes& nodes, Index k, Index up) {
     return true;
 }
 
-/// Of the depth that a filter may take or add. A depth that repeats every two cells and is nowhere negative has a mean of
-/// a quarter of its peak at least. Where a filter takes more, it sees no wave but the edge of a film.
+/// Of the depth that a filter may take or add. The mean of a depth that repeats every two cells and is nowhere negative
+/// is at least a quarter of its peak. Where a filter takes more, there is no wave but the edge of a film.
 constexpr double kMostOfDepth = 0.75;
 
-/// The depth h without its wave, as the bed law sees it.
+/// The depth h without its wave, for the bed law.
 template <class Real>
 Real without_wave(Real h, Real wave) {
     return h - min(max(wave, -kMostOfDepth * h), kMostOfDepth * h);
 }
 
-/// (1 - s X)(1 - s Y) multiplied out, so that x and y may change places; where the product is not known, two thirds
-/// of each: the waves along one axis and the chequerboard then both keep a third.
+/// (1 - s X)(1 - s Y) multiplied out, so that x and y may change places. Where the product is not known, two thirds of
+/// each. A third of the waves along one axis and of the chequerboard is then left.
 void filter_node(const Flow& flow, Nodes& nodes, Index k, Index up, bool x, bool y, bool sensed) {
     const double held = sensed ? std::max(0.0, 1.0 - 2.0 * shock_near(nodes, k, up)) : 1.0;
     const double strength = flow.scheme.filter * held;
@@ -325,7 +325,7 @@ void filter_calm(const Flow& flow, Nodes& nodes, Index k, Index up) {
     store(&nodes.law_depth[k], without_wave(load(h), strength * (depth_x + depth_y - depth_both)));
 }
 
-/// Mass and momentum of a node vanish together: however little it is, the velocity is right, and points that gather
+/// Mass and momentum of a node vanish together. However little it is, the velocity is right, and points that gather
 /// would miss it. Only denormal numbers are none.
 constexpr double kLeastMass = 1e-200;  ///< [kg]
 
@@ -377,10 +377,10 @@ void depth_of_four(Flow& flow, const DepthRequest& request, Index k, Index i, In
 }
 
 /// THEORY, section 6: the depth that the bed law is given at a margin. Shape functions spread a front over nodes beyond it,
-/// whose depth is a small part of the front's. Taken for the flow's own, it would give drag that grows as depth falls a hold
-/// on the front that it has not: the flow behind would pile up on it. So the depth is that of the mass behind, if that is
-/// more: of nodes that the node moves away from, by the cosine of twice the angle. Beside and behind a flow its edge is thin.
-/// What moves by round-off alone has no direction.
+/// whose depth is a small part of the front's. Were it taken for the flow's own, drag that grows as depth falls would
+/// hold the front too much. The flow behind would pile up on it. So the depth is that of the mass behind, if that is
+/// more. It is of nodes that the node moves away from, by the cosine of twice the angle. At the sides of a flow and
+/// behind it its edge is thin. What moves by round-off alone has no direction.
 double depth_at_margin(const double* h, Index up, const Pair& velocity, double gravity) {
     constexpr double kStill2 = 1e-16;  // of the wave's speed, squared: a metre a year
     const double speed2 = velocity.x * velocity.x + velocity.y * velocity.y;

@@ -8,7 +8,7 @@
 
 namespace frana {
 
-/// How far a surface that rises by `rise` where the bed rises by `ground` follows it: 1 a film on a slope, 0 a lake.
+/// How far a surface that rises by `rise` where the bed rises by `ground` follows it. 1 is a film on a slope, 0 a lake.
 inline double film_share(double rise, double ground) {
     return std::clamp(4.0 * rise * ground / (ground * ground + 1e-6) - 2.0, 0.0, 1.0);
 }
@@ -31,16 +31,17 @@ struct DepthRequest {
 /// M. Wetness is decided by the depth alone: nodes that only sub-points reach have depth and no momentum.
 NodeSums depth_pass(Flow& flow, const DepthRequest& request);
 
-/// Flags the wet nodes that have a dry one within two layers, and those with five wet nodes in a row in x or y.
+/// Flags the wet nodes that have a dry one within two layers. Also flags those with five wet nodes in a row in x or y.
 void mark_margin(Flow& flow);
 
 /// Wet nodes near a dry one have depth and bed averaged over partly dry supports, which lifts h + z. Their
-/// surface is extrapolated from the inside in three sweeps, never above h + z, never below the bed nearby, and
-/// lowered by no more than the ground that emerges around the node can have lifted it and the depth that it is given.
+/// surface is extrapolated from the inside in three sweeps, never above h + z, never below the bed nearby. The most by
+/// which it is lowered is a sum of two. One is the lift by ground that emerges around the node, the other the depth
+/// that it is given.
 void shoreline(Flow& flow);
 
-/// Removes the 2-cell wave from the surface where five wet nodes away from the margin stand in a row; exact on linear
-/// surfaces. Held back at bores (shock_pass), where that wave must stay visible to the pressure that undoes it.
+/// Removes the 2-cell wave from the surface where five wet nodes away from the margin stand in a row. It is exact on
+/// linear surfaces. Held back at bores (shock_pass), where that wave must stay visible to the pressure that undoes it.
 void filter(Flow& flow);
 
 }  // namespace frana

@@ -11,11 +11,11 @@ namespace frana {
 constexpr double kSurfaceRoundOff = 64.0 * std::numeric_limits<double>::epsilon();  ///< of a surface's height
 
 /// Slope of the free surface at a node with material, along one axis. Uniform depth gives the bed's own slope, a lake gives
-/// zero, whatever the bed. A dry neighbour that stands higher is a shore and takes no part; a dry neighbour that
-/// lies lower enters with its bed, and drives the front. What is as high but for round-off lies lower: a margin's surface
-/// often ends on the ground beside it (z_min), and whether that takes part is a factor of two. One-sided, a film that
-/// follows a curved bed takes the bed's own slope at the node (the difference to a side has the slope of half a cell
-/// away); `slope`: that of the bed.
+/// zero, whatever the bed. A dry neighbour that stands higher is a shore and takes no part. A dry neighbour that lies
+/// lower enters with its bed, and drives the front. What is as high but for round-off lies lower. A margin's surface
+/// often ends on the adjacent ground (z_min), and whether that takes part is a factor of two. One-sided, a film that
+/// follows a curved bed takes the bed's own slope at the node. (The difference to a side has the slope of half a cell
+/// away.) `slope`: that of the bed.
 inline double raw_gradient(const Flow& flow, Index k, Index step, bool wide, double slope) {
     const Nodes& nodes = flow.nodes;
     const double *e = nodes.surface.data() + k, *z = flow.bed.z.data() + k, cell = flow.cell;
@@ -32,8 +32,8 @@ inline double raw_gradient(const Flow& flow, Index k, Index step, bool wide, dou
     return ((ahead ? 0.0 : e[step] - e[0]) - (behind ? 0.0 : e[-step] - e[0])) / (2.0 * cell);
 }
 
-/// The same without the round-off of the surface's own height: a difference of some units in the last place over a
-/// cell is none, so that a lake rests to the last bit.
+/// The same without the round-off of the surface's own height. A difference of some units in the last place over a cell
+/// is none. So a lake rests to the last bit.
 inline double surface_gradient(const Flow& flow, Index k, Index step, bool wide, double bed_slope) {
     const double slope = raw_gradient(flow, k, step, wide, bed_slope);
     return std::abs(slope) * flow.cell <= kSurfaceRoundOff * std::abs(flow.nodes.surface[k]) ? 0.0 : slope;

@@ -19,7 +19,8 @@ struct TileBox {
         else
             *this = {std::min(i0, o.i0), std::max(i1, o.i1), std::min(j0, o.j0), std::max(j1, o.j1)};
     }
-    /// What of it, grown by `reach` nodes, lies in the tile that is (di, dj) tiles away, counted from that one's first node.
+    /// What of it, grown by `reach` nodes, lies in the tile that is (di, dj) tiles away. It is counted from that one's
+    /// first node.
     TileBox seen_from(Index di, Index dj, Index reach) const {
         if (empty()) return {};
         const auto first = [&](Index n, Index away) { return std::max<Index>(n - reach - away * kTile, 0); };

@@ -7,8 +7,8 @@
 
 namespace frana {
 
-/// Calls body(tile) for those of the domain among a tile and its eight neighbours, row by row from the lower left. A body of
-/// two arguments gets the place too: m of TileReach, 4 for the tile itself.
+/// Calls body(tile) for those of the domain among a tile and its eight neighbours. They come row by row from the lower
+/// left. A body of two arguments gets the place too: m of TileReach, 4 for the tile itself.
 template <class Body>
 void for_each_around(const TileGrid& grid, Index tile, Body&& body) {
     const Index width = grid.tiles_x(), column = tile % width;

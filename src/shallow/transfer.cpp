@@ -30,7 +30,8 @@ void deposit_stress(Flow& flow, const S& sx, const S& sy, double volume, const P
     }
 }
 
-/// Pressure and weight on points, as Fois et al. 2024 have them: eq. 13, or eq. 33 when a still level is known.
+/// Pressure and weight on points, as Fois et al. 2024 have them. They are eq. 13, or eq. 33 when a still level is
+/// known.
 template <class S>
 void deposit_paper_pressure(Flow& flow, const S& sx, const S& sy, double mass, double depth) {
     double z = 0.0, zx = 0.0, zy = 0.0;
@@ -127,15 +128,15 @@ private:
         double vx, vy, cxx, cxy, cyx, cyy, depth, wave_x, wave_y, velocity_share, old_x, old_y;
     };
 
-    /// APIC: C = D^-1 sum N v (x) d, D = cell^2/4 (quadratic) or cell^2/3 (cubic; Jiang et al. 2015);
-    /// TPIC: C = sum v (x) grad N.
+    /// APIC: C = D^-1 sum N v (x) d, D = cell^2/4 (quadratic) or cell^2/3 (cubic; Jiang et al. 2015). TPIC: C = sum v
+    /// (x) grad N.
     static constexpr double gradient_scale() {
         constexpr double inertia = std::is_same_v<S, Cubic> ? 3.0 : 4.0;
         return kTransfer == Transfer::apic ? inertia : 1.0;
     }
 
-    /// What an affine point keeps of its own motion beyond the nodes': of what it brought each node more than that had, as
-    /// far as friction there left it. In sum over the points of a node that is nothing.
+    /// What an affine point retains of its own motion beyond the nodes'. It is of what it brought each node more than
+    /// that had, as far as friction there left it. In sum over the points of a node that is nothing.
     Gathered own(const Flow& flow, Index p) const {
         const Columns& c = flow.columns;
         const S sx(c.x[p]), sy(c.y[p]);
@@ -250,9 +251,10 @@ private:
                 old_y};
     }
 
-    /// FLIP: forces add to a point's velocity what they added to the nodes', friction leaves of it the share that it left of
-    /// the nodes'. (Were friction's change added too, it would drive a light point that meets a heavy stream up to twice as
-    /// fast the other way.) The points' momentum is that of the nodes: sum m_p N_i kept_i (v_p + change_i).
+    /// FLIP: forces add to a point's velocity what they added to the nodes'. Friction leaves of it the share that it
+    /// left of the nodes'. (Suppose friction's change were added too. A light point that meets a heavy stream would be
+    /// driven up to twice as fast the other way.) The points' momentum is that of the nodes: sum m_p N_i kept_i (v_p +
+    /// change_i).
     std::pair<double, double> velocity_of(const Flow& flow, Index p, const Gathered& g) const {
         if constexpr (kTransfer == Transfer::flip) {
             const double flip_share = 1.0 - (1.0 - flow.scheme.flip_ratio) * (1.0 - flow.carried_share);

@@ -30,10 +30,10 @@ struct PointSums {
 /// Largest 2 mu_eff of the rheology in a step of `velocity_dt` [s] that is stable explicitly [Pa s]: nu =
 /// scheme.stress_cap, or 1/4.
 ///
-/// A point of gradient c alone pulls its nodes by A c, A = nu sum (N')^2 / N: 4 to 6 nu for quadratic shapes, 3 nu for
-/// cubic ones. Affine transfers bring the nodes c too and gather (1 - A) c: stable up to A = 2. Others gather -A c, and
-/// are with A = 1; as nodes have at least half their depth's inertia (grid update.cpp), A there is below 4 nu. So it is
-/// with linear shapes of any transfer.
+/// A point of gradient c alone changes its nodes' velocity by A c, A = nu sum (N')^2 / N. A is 4 to 6 nu for quadratic
+/// shapes, 3 nu for cubic ones. Affine transfers bring the nodes c too and gather (1 - A) c: stable up to A = 2. Others
+/// gather -A c, and are with A = 1. As nodes have at least half their depth's inertia (grid update.cpp), A there is
+/// below 4 nu. So it is with linear shapes of any transfer.
 double most_viscosity(const Flow& flow, double velocity_dt);
 
 class TransferKernel {
@@ -85,8 +85,7 @@ PointSums total(const ActiveTiles& active, const LazyArray<PointSums>& parts);
 /// Sums of the nodes' deposits before folding, to be held against PointSums (partition of unity).
 PointSums node_sums(Flow& flow);
 
-/// Closes the domain at walls by adding to each node what its mirror image would bring (mirror-image particles);
-/// nothing at open sides.
+/// Closes the domain at walls by adding to each node what its mirror particles would bring; nothing at open sides.
 void fold_walls(Flow& flow);
 
 /// Copies motion to the ghosts of walls, mirrored.

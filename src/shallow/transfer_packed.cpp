@@ -1,6 +1,6 @@
-// The default scheme's transfers (quadratic B-splines, TPIC), four points at a time: what belongs to a point is computed
-// lane by lane side by side, then each point in turn reaches its nodes, whose numbers lie side by side. Sums are those of
-// transfer.cpp up to round-off.
+// The default scheme's transfers (quadratic B-splines, TPIC), four points at a time. What belongs to a point is
+// computed lane by lane. Then each point in turn reaches its nodes, whose numbers are adjacent in memory. Sums are
+// those of transfer.cpp up to round-off.
 #include <algorithm>
 
 #include "base/simd.h"
@@ -175,8 +175,8 @@ private:
         });
     }
 
-    /// Not inlined, nor is deposit_batch: where a product and a sum become one rounding is the compiler's choice at each place,
-    /// and the bits must not hang on which pass calls them.
+    /// Not inlined, nor is deposit_batch. Where a product and a sum become one rounding is the compiler's choice at
+    /// each place. The bits must not depend on which pass calls them.
     [[gnu::noinline]] void gather_batch(Flow& flow, Index first, Index end, double dt, Sums& sums) {
         for_each_four(first, end, [&](Index p, int lanes) { gather_four(flow, p, lanes, dt, sums); });
     }
@@ -223,7 +223,7 @@ private:
         sums.p_abs += m * sqrt(vx * vx + vy * vy);
     }
 
-    /// Those that lie farther from their points than half a cell, or beside the grid's sides, one by one.
+    /// Those that lie farther from their points than half a cell, or next to the grid's sides, one by one.
     static void deposit_columns(Flow& flow, Index p, int lanes, Double4 x, Double4 y, Double4 m, const Domains& r,
                                 bool at_side) {
         if (!at_side && spread_four(flow, flow.nodes.column_mass.data(), lanes, x, y, m, r)) return;
@@ -256,8 +256,8 @@ private:
         return scaled(sigma, per_cell * volume);
     }
 
-    /// Velocity, its gradient (TPIC: sum v (x) grad N), depth and the change of the two-cell wave over a cell, at four
-    /// points.
+    /// Velocity, its gradient (TPIC: sum v (x) grad N) and depth at four points. Also the change of the two-cell wave
+    /// over a cell.
     struct OfFour {
         Double4 vx{}, vy{}, depth{}, cxx{}, cxy{}, cyx{}, cyy{}, wave_x{}, wave_y{};
         /// From what each of the four has: value, and change over a cell.
@@ -299,7 +299,7 @@ private:
         }
     };
 
-    /// What four points keep of their own motion beyond the nodes': see transfer.cpp.
+    /// What four points retain of their own motion beyond the nodes': see transfer.cpp.
     struct Own : OfFour {
         Double4 largest_part() const {
             return max(max(abs(this->vx), abs(this->vy)),

@@ -1,5 +1,5 @@
 #pragma once
-// The wave of two cells that central differences do not see. THEORY (17), (18).
+// The wave of two cells that is invisible to central differences. THEORY (17), (18).
 #include "base/simd.h"
 #include "base/types.h"
 

@@ -1,5 +1,6 @@
 #pragma once
-// What barriers of any kind share beside edges that stand out: which faces a node meets, and how faces share the solid.
+// What barriers of any kind share at edges that stand out. It tells which faces a node meets, and how faces share the
+// solid.
 #include <algorithm>
 
 #include "terrain/contact.h"
@@ -27,8 +28,9 @@ inline void keep_nearest(Contact* list, int& count, const Contact& contact) {
     list[at] = contact;
 }
 
-/// Puts those of `reached` (`most` of them), faces that a node's shape function lies on, behind the `count` of `list`, as
-/// far as they are not there; in place of the one direction to an edge. is_face: of one in `list`; same: as one reached.
+/// Appends to the `count` of `list` those of `reached` (`most` of them) that are not there. They are faces that a
+/// node's shape function lies on, and replace the one direction to an edge. is_face: of one in `list`; same: as one
+/// reached.
 template <class IsFace, class Same>
 MetFaces joined(Contact* list, int count, Contact* reached, int most, const IsFace& is_face, const Same& same) {
     const Vec3 first = list[0].normal;
@@ -47,8 +49,8 @@ MetFaces joined(Contact* list, int count, Contact* reached, int most, const IsFa
     return {faced, count};
 }
 
-/// A face's share of a place that lies `own` below it: each face has what is nearest to it, and halfway between two of them
-/// both blend over `blend`. for_each_other(take): takes the place's depth below each of the other faces [m].
+/// A face's share of a place that lies `own` below it. Each face has what is nearest to it, and halfway between two of
+/// them both blend over `blend`. for_each_other(take): takes the place's depth below each of the other faces [m].
 template <class ForEachOther>
 double shared_place(double own, double blend, const ForEachOther& for_each_other) {
     double nearest = own;

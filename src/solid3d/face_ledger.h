@@ -30,11 +30,12 @@ struct Patches {
     std::vector<char> off_top;           ///< per square: 1 if it is not on the prism's top; empty for sides
     std::vector<Vec3> impulse;           ///< on the material since the start, at row * count[0] + column [kg m/s]
 
-    /// What lies within `reach` [m] of a place on the face, and neither beyond the face nor beyond `others`, surfaces
-    /// that bound the material: the part for which a node there stands. Where nothing is left, the nearest place.
+    /// What lies within `reach` [m] of a place on the face, and neither beyond the face nor beyond `others`. These are
+    /// surfaces that bound the material. It is the part for which a node there stands. Where nothing is left, the
+    /// nearest place.
     FacePart around(const Vec3& x, double reach, const std::vector<Surface>& others) const;
-    /// Finds `area`: what of each square is of the face and not beyond `others`, a quarter of it at least, lest single
-    /// points tell too much.
+    /// Finds `area`: the part of each square that is of the face and not beyond `others`. It is a quarter of the square
+    /// at least, so that single points do not count too much.
     void measure(const std::vector<Surface>& others);
     /// Finds `off_top`: neither an edge of the prism goes through the square, nor is its middle within.
     void find_off_top(const Prism& prism);
@@ -50,8 +51,8 @@ struct Face {
     Patches patches;
 };
 
-/// All faces of all barriers in the order of the surfaces; planes and the ground, whose impulses are known
-/// anyway (SolidBody::impulse), have none here.
+/// All faces of all barriers in the order of the surfaces. Planes and the ground, whose impulses are known anyway
+/// (SolidBody::impulse), have none here.
 class FaceLedger {
 public:
     FaceLedger() = default;

@@ -1,7 +1,6 @@
 #pragma once
-// The background 3D grid: nodes in tiles of 8 x 8 x 8, each tile one stretch of memory, with a ring of
-// spare tiles around the domain. As in the plane (mpm/tile_grid.h), only tiles near material are ever
-// touched.
+// The background 3D grid: nodes in tiles of 8 x 8 x 8. A ring of spare tiles is around the domain. Each tile is one
+// stretch of memory. As in the plane (mpm/tile_grid.h), only tiles near material are ever used.
 #include <array>
 #include <cmath>
 #include <vector>
@@ -21,8 +20,8 @@ struct GridGeometry3d {
 };
 
 /// Maps nodes and tiles to storage. The storage index of node (i, j, k) is place(0, i) + place(1, j) +
-/// place(2, k): a sum of three numbers, so that a point finds its 27 nodes by 9 look-ups. Positions are
-/// measured in cells from node (0, 0, 0).
+/// place(2, k). It is a sum of three numbers, so a point finds its 27 nodes by 9 look-ups. Positions are measured in
+/// cells from node (0, 0, 0).
 class Grid3d {
 public:
     explicit Grid3d(const GridGeometry3d& geometry) : geometry_(geometry) {

@@ -8,7 +8,7 @@
 namespace frana {
 
 /// 3D points. Positions are in cells from node (0, 0, 0); all else is SI. A law has up to six numbers
-/// of its own for each point (law/solid_law.h); columns that no law needs are empty.
+/// of its own for each point (law/solid_law.h). Columns that no law needs are empty.
 struct MaterialPoints {
     std::array<Array, 3> x;         ///< position [cells]
     std::array<Array, 3> v;         ///< velocity [m/s]
@@ -22,7 +22,7 @@ struct MaterialPoints {
 
     Index count() const { return static_cast<Index>(mass.size()); }
 
-    /// The one list of floating-point columns in use: sorting, growing and keeping walk it.
+    /// The one list of floating-point columns in use, for sorting, growing and serializing.
     template <class Visit>
     void each(Visit&& visit) {
         for (Array& column : x) visit(column);
@@ -50,7 +50,7 @@ struct MaterialPoints {
 class Sorter3d {
 public:
     /// Sorts `points`, without those marked in `gone` (one byte a point, may be empty), and rebuilds
-    /// `active`: tiles with points in eight colours, and on the work list those and their 26 neighbours.
+    /// `active`. That has tiles with points in eight colours, and on the work list those and their 26 neighbours.
     void sort(MaterialPoints& points, const Grid3d& grid, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
     /// Makes `active` whole from its tiles and their ranges.
     static void list_tiles(const Grid3d& grid, ActiveTiles& active);

@@ -9,7 +9,7 @@ namespace {
 constexpr double kDiagonal = 1.5;
 constexpr double kSameNormal = 0.999;  // 2.5 degrees: above what the field errs by on a face
 
-/// Faces beside the sharp edges that are no farther away.
+/// Faces at the sharp edges that are no farther away.
 struct Near {
     EdgeFace list[SharpEdges::kMostFaces];
     int count;
@@ -27,7 +27,7 @@ bool is_face(const Near& near, const Contact& contact) {
     });
 }
 
-/// Of a field that knows one face only, the nearest: where it is another one than the point's, both blend. Faces that lie
+/// Of a field that has one face only, the nearest: where it is another one than the point's, both blend. Faces that lie
 /// 30 degrees apart or less are one that bends; opposite ones share nothing.
 double share_of_smooth(const DistanceField& shape, const Contact& contact, const Vec3& place, double blend) {
     const Contact nearest = shape.contact(place);
@@ -42,7 +42,7 @@ double share_of_smooth(const DistanceField& shape, const Contact& contact, const
 Contact sharp_contact(const DistanceField& shape, const Vec3& x) {
     const Contact found = shape.contact(x);
     if (shape.sharp.empty()) return found;
-    // Where the field errs by more than a spacing, the face is another one than those beside the edge.
+    // Where the field errs by more than a spacing, the face is another one than those at the edge.
     const Near near(shape, x, kDiagonal * std::abs(found.distance) + 2.0 * shape.spacing, 0.0);
     const EdgeFace* best = nullptr;
     const auto better = [](double d, double than) {  // before a face the nearest, inside the least deep

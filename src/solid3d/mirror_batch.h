@@ -82,10 +82,10 @@ struct Vec3x4 {
     return sum;
 }
 
-/// Whether the stress holds the layer beside a stuck surface. 1 where the change of speed over the distance m is at most
-/// the shear velocity; 0 where its square is twice as large. A faster layer has a thinner boundary layer than these nodes
-/// can show. The transfer has made its profile. Carried on behind the surface that would drive the layer, not hold it.
-/// THEORY.md, section 4.
+/// Whether the stress holds the layer next to a stuck surface. 1 where the change of speed over the distance m is at
+/// most the shear velocity. 0 where its square is twice as large. A faster layer has a thinner boundary layer than
+/// these nodes can show. The transfer has made its profile. Carried on behind the surface that would drive the layer,
+/// not hold it. THEORY.md, section 4.
 [[gnu::always_inline]] inline Double4 settled(const MirrorBatch& batch, const Vec3x4& slope, const Vec3x4& traction,
                                               const Double4& per_mass) {
     const Double4 none{}, one = none + 1.0;
@@ -96,14 +96,14 @@ struct Vec3x4 {
     return min(max(2.0 * friction2 - speed2, none), friction2) / select(friction2 > 0.0, friction2, one);
 }
 
-/// In a stuck surface mirror particles turn velocities round; this changes v and its gradient so that what flows along
-/// the surface goes on through it with its bend, which each step would otherwise take from the layer beside it. With v
-/// and v' at the distance d, and at rest on the surface, the speed is a z + b z^2, b = (v' d - v) / d^2: at -d it is 2
-/// b d^2 - v, its gradient v' - 4 b d. What bends by more than a third of v over d (kGentle: the square of b d^2 / v),
-/// and at 0.47 of it and more altogether (kRough), is no layer that has settled, but strikes the surface or is noise,
-/// and is turned round only: a sheet's bend is d / (2 H - d), a third at half of its depth H. Nor is it a layer that has
-/// settled where the stress does not hold it (`settled`).
-/// `stress` is an impulse, that of a step on the point's volume [J s]; per_mass: 1 over the step and the mass.
+/// In a stuck surface mirror particles turn velocities round. This changes v and its gradient so that what flows along
+/// the surface goes on through it with its bend. Otherwise each step would take that bend from the layer at the
+/// surface. v and v' are those at the distance d; on the surface there is rest. Then the speed is a z + b z^2, b = (v'
+/// d - v) / d^2. At -d it is 2 b d^2 - v, its gradient v' - 4 b d. What bends by more than a third of v over d is no
+/// settled layer (kGentle: the square of b d^2 / v). It strikes the surface or is noise, and is turned round only. At
+/// 0.47 and more that is so altogether (kRough). A sheet's bend is d / (2 H - d), a third at half of its depth H. Nor
+/// is it a layer that has settled where the stress does not hold it (`settled`). `stress` is an impulse, that of a step
+/// on the point's volume [J s]; per_mass: 1 over the step and the mass.
 [[gnu::always_inline]] inline void bend(const MirrorBatch& batch, const Mat3x4& stress, const Double4& per_mass,
                                         Double4* v, Mat3x4& gradient) {
     constexpr double kGentle = 1.0 / 9.0, kRough = 2.0 / 9.0;
@@ -141,8 +141,8 @@ struct Vec3x4 {
     }
 }
 
-/// What the mirror particles give: the motion and the stress of their points, mirrored; a point and its mirror particle
-/// push each other alike. bends: also in their speeds along stuck surfaces.
+/// The contributions of mirror particles: the motion and the stress of their points, mirrored. Forces between a point
+/// and its mirror particle are equal and opposite. bends: also in their speeds along stuck surfaces.
 template <bool bends, class Law>
 [[gnu::always_inline]] inline BatchContribution mirrored_contribution(const Law& law, const MaterialPoints& q,
                                                                       const MirrorBatch& batch, const Vec3& gravity,

@@ -14,18 +14,18 @@
 namespace frana {
 namespace {
 
-/// Cells a point may have moved since the last sort: tiles of one colour stand 16 nodes apart and reach 8 + 2
-/// nodes and twice the drift.
+/// Cells a point may have moved since the last sort. Tiles of one colour stand 16 nodes apart and reach 8 + 2 nodes and
+/// twice the drift.
 constexpr double kDriftLimit = 1.5;
 
-/// Tiles whose mirror particles give to nodes at once stand so many tiles apart, from two to four: a tile's reach 8 + 2
+/// Tiles whose mirror particles give to nodes at once stand so many tiles apart, from two to four. A tile's reach 8 + 2
 /// nodes, twice the drift and twice the distance of a mirror particle from its point [cells].
 constexpr double kOwnReach = static_cast<double>(kTile3d) + 2.0 + 2.0 * kDriftLimit;
 Index tiles_apart(double farthest) {
     return static_cast<Index>(std::ceil((kOwnReach + 2.0 * farthest) / static_cast<double>(kTile3d)));
 }
 
-/// Seeds that would not be where the solver looks for them.
+/// Seeds that would not be where the solver expects them.
 void require_inside(const SolidSeeds& seeds, const GridGeometry3d& grid) {
     const std::size_t count = seeds.mass.size();
     expect(seeds.position.size() == count && seeds.velocity.size() == count &&
@@ -180,8 +180,8 @@ void Mpm3d::mark_near() {
     if (body_.barriers != 0) make_room_for_impulses();
 }
 
-/// Mirror particles in a level bed stand below their points, not beside them: more tiles may give to nodes at once.
-/// Where more surfaces are near, there are mirror particles of mirror particles.
+/// Mirror particles in a level bed stand below their points, not to their side. So more tiles may give to nodes at
+/// once. Where more surfaces are near, there are mirror particles of mirror particles.
 void Mpm3d::list_mirrors(Index n, SurfaceSet near, const Vec3& low, const Vec3& high) {
     const bool one = (near & (near - 1)) == 0;
     const Surface& surface = body_.surfaces[static_cast<std::size_t>(__builtin_ctz(near))];
@@ -193,9 +193,9 @@ void Mpm3d::list_mirrors(Index n, SurfaceSet near, const Vec3& low, const Vec3& 
     body_.mirror_colour[static_cast<std::size_t>(64 * (apart - 2) + colour)].push_back(n);
 }
 
-/// Mirror particles in a surface that bends may stand where its nodes lie farther from it than mirror particles reach
-/// in a plane: there too the real material has to be told from them. A mirror particle stands up to nine cells from
-/// its point (solid_kernel.cpp).
+/// In a bent surface mirror particles may stand where its nodes lie farther than mirror particles reach in a plane.
+/// There too the real material has to be told from them. A mirror particle stands up to nine cells from its point
+/// (solid_kernel.cpp).
 void Mpm3d::mark_visible_mirrors() {
     SurfaceSet bent = 0;
     for (std::size_t s = 0; s < body_.surfaces.size(); ++s)
@@ -222,7 +222,7 @@ void Mpm3d::mark_visible_mirrors() {
     }
 }
 
-/// Lists that a step fills without asking for memory: of nodes, a push or two in every one.
+/// Lists that a step fills without allocating memory: of nodes, a force or two in every one.
 void Mpm3d::make_room_for_impulses() {
     constexpr std::size_t kImpulsesOfNode = 2;
     const auto make_room = [&](std::vector<std::vector<FaceImpulse>>& lists, const std::vector<SurfaceSet>& near,
@@ -248,8 +248,8 @@ double Mpm3d::step_length(double until) const {
     return status_.step_towards(until, longest);
 }
 
-/// One step: points give mass, momentum and stress to the nodes, surfaces show their mirror particles, nodes meet the
-/// surfaces, points are carried and strained.
+/// One step. Points give mass, momentum and stress to the nodes, and surfaces show their mirror particles. Nodes meet
+/// the surfaces, and points are carried and strained.
 void Mpm3d::advance(double until) {
     expect(until > status_.time, "a step goes forward in time");
     const double dt = step_length(until);
@@ -360,8 +360,7 @@ Vec3 Mpm3d::momentum_residual() const {
     return status_.momentum + status_.momentum_left - given;
 }
 
-/// Of the affine motion: m h^2 / 4 times the axial vector of the gradient's skew part, Jiang et al. (2015),
-/// eq. 6 there.
+/// Of the affine motion: m h^2 / 4 times the axial vector of the gradient's skew part. Jiang et al. (2015), eq. 6 there.
 Vec3 Mpm3d::angular_momentum() const {
     Vec3 sum = Vec3::Zero();
     const double h = body_.grid.cell();

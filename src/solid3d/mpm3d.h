@@ -30,7 +30,7 @@ struct SolidSeeds {
     }
 };
 
-/// Material beside the points that another model carries. It moves on at its velocity.
+/// Material adjacent to the points that another model carries. It moves on at its velocity.
 struct GhostParticles {
     SolidSeeds seeds;
     std::vector<Mat3> gradient;  ///< of the velocity at each, dv_k/dx_l at (k, l) [1/s]
@@ -57,8 +57,8 @@ struct SolidScene {
     double density = 1000.0;                   ///< without stress [kg/m^3]
     SolidLaw law = solid::Fluid{};
     Affine affine = Affine::tpic;
-    /// Points keep their velocities and learn how those of the nodes change (affine FLIP), but for a share of
-    /// 1 - exp(-dt / blending) that they take from the nodes (PIC), so that damping is by time, not by step.
+    /// Points retain their velocities and get the changes of the nodes' ones (affine FLIP). They take a share of 1 -
+    /// exp(-dt / blending) from the nodes (PIC), so that damping is by time, not by step.
     bool flip = false;
     double blending = 0.0;          ///< [s]
     double averaging = 0.005;       ///< share of J's mean taken over in a step, of laws that average [1]
@@ -103,7 +103,7 @@ struct SolidStatus : Clock, SolidLedger {
 
 /// Of surfaces on the nodes of a tile in a step [J].
 struct SurfaceWork {
-    double contact_work = 0.0, friction = 0.0;  ///< given by pushes; lost to friction
+    double contact_work = 0.0, friction = 0.0;  ///< given by normal forces; lost to friction
 };
 
 /// Sums of the loops over points, tile by tile.
@@ -142,13 +142,13 @@ struct SolidBody {
 
     LazyArray<Node> nodes, real;   ///< real: without mirror particles, near surfaces
     LazyArray<Node> mirror_force;  ///< of the step, near barriers: impulse of their mirror particles' stress [kg m/s]
-    /// Material beside the points, which gives to the nodes like them. `real` has it too.
+    /// Material adjacent to the points, which contributes to the nodes like them. `real` has it too.
     struct Ghosts {
         GhostParticles material;
         std::vector<SurfaceSet> near;  ///< surfaces that may show mirror particles of each of its seeds
         /// Of the step, seeds and mirror particles: a place [cells], mass and momentum [kg, kg m/s], mass times the
-        /// velocity's gradient [kg/s], impulse of the pressure [J s], and the seed's mirror particle where one is cut
-        /// (surfaces.h).
+        /// velocity's gradient [kg/s]. Also the impulse of the pressure [J s], and the seed's mirror particle where one
+        /// is cut (surfaces.h).
         struct Shown {
             Vec3 place;
             double mass;
@@ -161,8 +161,8 @@ struct SolidBody {
         std::vector<std::uint8_t> reaches;  ///< of the step, per tile of the work list: 1 where it gives to a node
         std::vector<Vec3> tile_impulse;     ///< of the step, what it gave to the points, per tile of the work list
     };
-    /// Of transfers that keep velocities. First m J and the momentum that points brought, without mirror particles;
-    /// then what v_p / flip_share grows by: the new velocity less flip_share times that brought.
+    /// Of transfers that retain velocities. First m J and the momentum that points brought, without mirror particles.
+    /// Then what v_p / flip_share grows by: the new velocity less flip_share times that brought.
     LazyArray<Node> flip_sums;
     double flip_share = 0.0;   ///< of the step: exp(-dt / blending)
     LazyArray<double> mass_j;  ///< sum of w m J, of laws that average
@@ -173,8 +173,8 @@ struct SolidBody {
     std::vector<Vec3> point_impulse;     ///< the same, per particle tile: of points put back
     SurfaceSet barriers = 0;             ///< which of the surfaces are
     FaceLedger ledger;                   ///< of barriers' faces since the start
-    /// Of the step: what barriers gave to the nodes of each tile of the work list, and to the points of each
-    /// particle tile that they put back.
+    /// Of the step: what barriers gave to the nodes of each tile of the work list. Also to the points of each particle
+    /// tile that they put back.
     std::vector<std::vector<FaceImpulse>> node_impulses, point_impulses;
     std::vector<SolidSums> sums;  ///< of the step, per particle tile
     Ghosts ghosts;
@@ -190,7 +190,7 @@ public:
     virtual void clear(SolidBody& body) const = 0;
     virtual void scatter(SolidBody& body, double dt) const = 0;
     virtual void scatter_mirrors(SolidBody& body, double dt) const = 0;
-    /// Material beside the points at `time`: before the mirror particles, and after them its own.
+    /// Material adjacent to the points at `time`: before the mirror particles, and after them its own.
     virtual void scatter_ghosts(SolidBody& body, double time, double dt) const = 0;
     virtual void scatter_ghost_mirrors(SolidBody& body) const = 0;
     virtual void move_nodes(SolidBody& body) const = 0;
@@ -198,8 +198,8 @@ public:
     virtual double sound_speed(double density) const = 0;
     virtual double explicit_viscosity() const = 0;
     virtual int states() const = 0;
-    /// J and state of a point at rest under the pressure p, the same from all sides; and the energy that it then stores,
-    /// per volume without stress [J/m^3].
+    /// J and state of a point at rest under the pressure p, the same from all sides. Also the energy that it then
+    /// stores, per volume without stress [J/m^3].
     virtual double press(double p, double& j, double* state) const = 0;
 };
 
@@ -214,7 +214,7 @@ public:
     void advance(double until);
     /// More material, between two steps. Its points get the next numbers.
     void add(const SolidSeeds& seeds);
-    /// Material that points feel from now on as they feel each other: nodes that they reach have its mass, motion and
+    /// Material that points feel from now on as they feel each other. Nodes that it reaches have its mass, motion and
     /// pressure too. It goes on at its velocity whatever the points do; what it gives them is recorded.
     void set_adjacent(GhostParticles material);
     /// A point that left goes on like that, besides.
@@ -227,13 +227,14 @@ public:
     };
     /// Since the last call.
     std::vector<Birth> take_births() { return std::exchange(births_, {}); }
-    /// Those that left since the last call, step by step in the order of the tiles: the same for any number of threads.
+    /// Those that left since the last call, step by step in the order of the tiles. They are the same for any number of
+    /// threads.
     std::vector<DepartedPoint> take_departed() { return std::exchange(departed_, {}); }
     /// Between two steps, all points leave.
     void leave();
     /// Sets the clock of a flow that has not begun to move [s].
     void start_at(double time);
-    /// Saves the state between two steps, or takes it up again with all its bits, in a flow of the same scene.
+    /// Saves the state between two steps, or restores it with all its bits, in a flow of the same scene.
     void serialize(Archive& archive);
     const SolidStatus& status() const { return status_; }
     const SolidBody& body() const { return body_; }
@@ -247,7 +248,8 @@ public:
     Vec3 velocity(Index p) const { return {body_.points.v[0][p], body_.points.v[1][p], body_.points.v[2][p]}; }
     /// Cauchy stress at a point [Pa].
     Sym3 stress(Index p) const;
-    /// Momentum + carried out - given with points - impulses of gravity, surfaces and material beside: round-off [kg m/s]
+    /// Momentum + carried out - given with points - impulses of gravity, surfaces and adjacent material: round-off [kg
+    /// m/s]
     Vec3 momentum_residual() const;
     /// Angular momentum about the origin; with apic that of the affine motion too [kg m^2/s].
     Vec3 angular_momentum() const;

@@ -1,4 +1,4 @@
-// Material beside the points that another model carries.
+// Material adjacent to the points that another model carries.
 #include "base/error.h"
 #include "solid3d/mpm3d.h"
 

@@ -1,5 +1,5 @@
-// The state of a body of points between two steps, as it is kept and taken up again: the points in their
-// order with the tiles they are sorted by, and the sums of the run. Nodes start empty in every step.
+// The state of a body of points between two steps, as it is serialized. It is the points in their order with the tiles
+// they are sorted by, and the sums of the run. Nodes start empty in every step.
 #include "mpm/stored_points.h"
 #include "solid3d/mpm3d.h"
 

@@ -6,8 +6,8 @@
 
 namespace frana {
 
-/// Halves keep state and gradient, and have the velocities of the point's field at their places: mass, momentum and
-/// centre stay; the energy of motion that they gain is recorded as what the scheme gave.
+/// Halves retain state and gradient, and have the velocities of the point's field at their places. Mass, momentum and
+/// centre stay. The energy of motion that they gain is recorded as what the scheme gave.
 void Mpm3d::split() {
     MaterialPoints& q = body_.points;
     const GridGeometry3d& g = body_.grid.geometry();

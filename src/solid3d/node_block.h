@@ -1,6 +1,6 @@
 #pragma once
-// The nodes that the points of one tile reach, side by side in a block of their own: rows of three nodes are
-// one stretch of memory there, at distances that the compiler knows.
+// The nodes that the points of one tile reach, in a block of their own. Rows of three nodes are one stretch of memory
+// there, at distances fixed at compile time.
 #include "base/simd.h"
 #include "solid3d/grid3d.h"
 
@@ -14,8 +14,8 @@ struct Box3d {
 /// Cells that a point may stray from its tile, before it is sorted again.
 constexpr Index kStray = 2;
 
-/// On the stack of the thread that works on the tile: 207 KiB, of which a full tile uses a third to two
-/// thirds, and of `flip_sums` nothing where velocities are not kept.
+/// On the stack of the thread that works on the tile: 207 KiB. A full tile uses a third to two thirds of it, and of
+/// `flip_sums` nothing where velocities are not retained.
 class NodeBlock {
 public:
     static constexpr Index kSide = kTile3d + 2 + 2 * kStray;
@@ -23,7 +23,7 @@ public:
     static constexpr Index kPlane = kSide * kRow;  ///< storage between nodes (i, j, k) and (i, j, k + 1)
 
     Double4 node[kSide * kPlane];
-    Double4 flip_sums[kSide * kPlane];  ///< of transfers that keep velocities (mpm3d.h)
+    Double4 flip_sums[kSide * kPlane];  ///< of transfers that retain velocities (mpm3d.h)
     double mass_j[kSide * kPlane + 1];  ///< rows of three are read as four
 
     static bool holds(const Box3d& box) {

@@ -1,6 +1,5 @@
 #pragma once
-// Four material points side by side: their weights, what they give to the nodes of a block, and what they
-// take from them.
+// Four material points at once: their weights, what they give to the nodes of a block, what they take.
 #include "law/sym3.h"
 #include "solid3d/node_block.h"
 #include "solid3d/spline.h"
@@ -37,9 +36,9 @@ struct BatchContribution {
     Double4 mass_j;
 };
 
-/// What each of four points gives along each axis: the share of node (i, j, k) is w_j w_k X_i + w_i (w_k Y_j
-/// + w_j Z_k), where X holds mass and momentum too. Laid out point by point. `flip`: so too what they had
-/// before the step's impulses, with m J in the place of the mass.
+/// What each of four points gives along each axis. The share of node (i, j, k) is w_j w_k X_i + w_i (w_k Y_j + w_j
+/// Z_k). X holds mass and momentum too. Laid out point by point. `flip`: so too what they had before the step's
+/// impulses, with m J in the place of the mass.
 template <Affine affine, bool flip>
 struct BatchShares {
     Double4 share[3][3][4];           ///< axis, node, point: mass and momentum

@@ -1,5 +1,5 @@
 #pragma once
-// 3D points cell by cell, for looks at their neighbourhoods between steps.
+// 3D points cell by cell, to find their neighbours between steps.
 #include <algorithm>
 #include <vector>
 
@@ -11,7 +11,7 @@ namespace frana {
 /// nodes: points in cells at most two apart along each axis share a node. Places are in the cells' order.
 class PointCells {
 public:
-    static constexpr Index kReach = 2;  ///< the farthest that neighbours are asked for
+    static constexpr Index kReach = 2;  ///< the farthest search for neighbours
 
     /// Of all points but those marked in `gone` (one byte a point, may be empty).
     PointCells(const MaterialPoints& points, const Grid3d& grid, const std::vector<std::uint8_t>& gone = {});

@@ -13,8 +13,8 @@ namespace frana {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Of a side's length and of a height [1]: so far crossings beyond a side's end count, so that nothing passes
-/// between two faces by round-off.
+/// Of a side's length and of a height [1]. So far crossings beyond a side's end count, so that nothing passes between
+/// two faces by round-off.
 constexpr double kSeam = 1e-9;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -128,7 +128,7 @@ Contact Prism::top_contact(const Vec3& x) const {
     return {(x.z() - at.z) * normal.z(), normal, top_face()};
 }
 
-/// The contact with the upper rim of a side where the point stands above it.
+/// The contact with the upper edge of a side where the point stands above it.
 Contact Prism::lifted(const Vec3& x, double distance, const Vec2& normal, int face) const {
     const double above = x.z() - top_at(x.head<2>() - distance * normal);
     if (!(above > 0.0)) return {distance, level(normal), face};

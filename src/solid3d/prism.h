@@ -8,8 +8,8 @@
 
 namespace frana {
 
-/// The area of polygons that do not overlap one another, from their top downwards. Faces are numbered: the
-/// sides in the order of the polygons' edges, parts and rings in turn, and the top behind the last of them.
+/// The area of polygons that do not overlap one another, from their top downwards. Faces are numbered. First come the
+/// sides in the order of the polygons' edges, parts and rings in turn, and then the top.
 class Prism {
 public:
     /// A level top [m]. Throws UserError when the outline has no area or a side without length.
@@ -17,21 +17,21 @@ public:
     /// A top that follows a height field [m].
     Prism(const Polygons& outline, Raster top);
 
-    /// Faces that a point can meet, the nearest first, at most kMostContacts of them no farther than a point
-    /// and its mirror particle reach. Before an edge that stands out the one direction to it; in a corner that stands
-    /// in both of its planes, which a point inside sees as well. Where the solid is so thin that material of
-    /// both sides shares nodes (3 (|n_x| + |n_y|) cells) a place inside meets both sides and the top.
+    /// Faces that a point can meet, the nearest first, at most kMostContacts of them. They are no farther than a point
+    /// and its mirror particle reach. Before an edge that stands out it is the one direction to it. In a corner that
+    /// stands in it is both of its planes, which a point inside sees as well. The solid may be so thin that material of
+    /// both sides shares nodes (3 (|n_x| + |n_y|) cells). Then a place inside meets both sides and the top.
     int contacts(const Vec3& x, double cell, Contact* list) const;
-    /// Beside an edge that stands out a node carries pressure of both faces: puts those that are not among the `count` of
-    /// `list` behind them, in place of the one direction to the edge.
+    /// At an edge that stands out a node carries pressure of both faces. Appends those that are not among the `count`
+    /// of `list`, in place of the one direction to the edge.
     MetFaces faces_at_edge(const Vec3& x, double cell, Contact* list, int count) const;
     bool inside(const Vec3& x) const { return x.z() < top_at(x.head<2>()) && within(x.head<2>()); }
     /// Whether the way between two places, the first outside, goes into the solid.
     bool enters(const Vec3& from, const Vec3& to, Entry& entry) const;
-    /// Of the mirror particle that a point before `contact` shows at `place`, in the solid: the share that is this face's.
-    /// Beside an edge that stands out the faces' mirror particles would fill the solid twice and three times, and push
-    /// material away from the edge. Each face has what is nearest to it, and halfway between two of them both blend over
-    /// `blend` [m]. An edge itself shows none.
+    /// This face's share of the mirror particle that a point before `contact` shows at `place`, in the solid.
+    /// At an edge that stands out the faces' mirror particles would fill the solid twice and three times. They would
+    /// drive material away from the edge. Each face has what is nearest to it, and halfway between two of them both
+    /// blend over `blend` [m]. An edge itself shows none.
     double mirror_share(const Contact& contact, const Vec3& place, double blend) const;
     /// Length of the solid from a place on its surface into the unit direction `way` [m].
     double thickness(const Vec3& from, const Vec3& way) const;
@@ -71,14 +71,14 @@ private:
     Vec3 low_, high_;
 };
 
-/// Outline of a wall along a line whose one face stands on the line: to the left of it, as one walks along,
-/// lies the material that counts (or to the right), to the other side its thickness [m]. Corners are mitred.
-/// Throws UserError when the line has less than two different points or turns by more than 120 degrees.
+/// Outline of a wall along a line whose one face stands on the line. The material that counts lies to the left of it,
+/// along the line (or to the right). To the other side lies its thickness [m]. Corners are mitred. Throws UserError
+/// when the line has less than two different points or turns by more than 120 degrees.
 enum class WetSide { left, right };
 Polygons wall_outline(const Polyline& line, WetSide wet, double thickness);
 
-/// The least thickness at which material on both sides of a wall along the line shares no node of cells of
-/// that size [m]: thinner walls are thickened to it, away from the wet side.
+/// The least thickness of a wall along the line at which material on its sides shares no node [m]. The nodes are those
+/// of cells of that size. Thinner walls are thickened to it, away from the wet side.
 double least_wall_thickness(const Polyline& line, double cell);
 
 }  // namespace frana

@@ -40,7 +40,7 @@ struct Contribution {
     Double4 base, affine[3], force[3];
 };
 
-/// flip: points keep their velocities and learn how those of the nodes change (mpm3d.h).
+/// flip: points retain their velocities and get the changes of the nodes' ones (mpm3d.h).
 template <class Law, Affine affine, bool flip>
 class Kernel final : public Mpm3dKernel {
 public:
@@ -82,8 +82,9 @@ public:
         });
     }
 
-    /// Mirror particles lie on the far side of surfaces: tiles that scatter them at once stand two to four apart
-    /// (mpm3d.cpp). Those further off, of points deep in a corner or behind a surface, reach no node that material touches.
+    /// Mirror particles lie on the far side of surfaces. Tiles that scatter them at once stand two to four apart
+    /// (mpm3d.cpp). Those further off, of points deep in a corner or behind a surface, reach no node that material
+    /// touches.
     void scatter_mirrors(SolidBody& body, double dt) const override {
         for_each_work_tile(body.active, [&](Index n, Index tile) {
             const SurfaceSet near = body.near_nodes[static_cast<std::size_t>(n)];
@@ -116,7 +117,7 @@ public:
         });
     }
 
-    /// One thread: it is a thin layer. Nodes keep apart what the points alone gave them.
+    /// One thread: it is a thin layer. Nodes store apart what the points alone gave them.
     void scatter_ghosts(SolidBody& body, double time, double dt) const override {
         SolidBody::Ghosts& ghosts = body.ghosts;
         ghosts.reaches.assign(body.active.work.size(), 0);
@@ -230,7 +231,7 @@ private:
         return contribution;
     }
 
-    /// The motion and the stress that a mirror particle shows; a point and it push each other alike.
+    /// The motion and the stress that a mirror particle shows. Forces between a point and it are equal and opposite.
     static Point mirrored(const Point& p, const MirrorParticle& mirror) {
         Point other;
         other.mass = mirror.share * p.mass, other.j = p.j;
@@ -265,8 +266,8 @@ private:
         }
     }
 
-    /// What material beside the points gives at `time`: itself, and its mirror particles in surfaces. Only where points
-    /// may be.
+    /// What material adjacent to the points gives at `time`: itself, and its mirror particles in surfaces. Only where
+    /// points may be.
     static void list_ghosts(SolidBody& body, double time, double dt) {
         SolidBody::Ghosts& ghosts = body.ghosts;
         const SolidSeeds& seeds = ghosts.material.seeds;
@@ -380,14 +381,14 @@ private:
     struct Touch {
         int surface;
         Contact contact;
-        double least;                ///< speed away from the surface that it asks for [m/s]
+        double least;                ///< speed away from the surface that it requires [m/s]
         double normal_change = 0.0;  ///< along its normal, never below zero [m/s]
         Vec3 brake{0, 0, 0};         ///< along the surface [m/s]
     };
     static constexpr int kMostTouched = 6;
 
-    /// Surfaces that mirror particles of points at `x` can reach, with the speeds they ask for: what points and mirror
-    /// particles together have along the normal (`mixed`), and behind a surface none into it.
+    /// Surfaces that mirror particles of points at `x` can reach, with the speeds they require. That is what points and
+    /// mirror particles together have along the normal (`mixed`), and behind a surface none into it.
     static int touched(const SolidBody& body, SurfaceSet near, Index node, const Vec3& x, const Vec3& mixed,
                        Touch* list) {
         int count = 0;
@@ -405,10 +406,10 @@ private:
         return count;
     }
 
-    /// The same for the faces of a barrier. In one so thin that material of both sides shares a node, neither
-    /// side knows what the other's mirror particles ask for: nothing goes into either. Beside an edge a node carries some
-    /// of the pressure of faces that it is not before. They ask for no more than the impulse of their mirror particles'
-    /// pressure: with their motion too they would brake what passes the edge.
+    /// The same for the faces of a barrier. In one so thin that material of both sides shares a node, the sides' mirror
+    /// particles are not told apart. Nothing goes into either side. At an edge a node carries some of the pressure
+    /// of faces that it is not before. They require no more than the impulse of their mirror particles' pressure. With
+    /// their motion too they would brake what passes the edge.
     [[gnu::noinline]] static int touched_barrier(const SolidBody& body, int s, Index node, const Vec3& x,
                                                  const Vec3& mixed, Touch* list, int count) {
         Contact found[kMostContacts];
@@ -433,8 +434,8 @@ private:
         return count;
     }
 
-    /// Pushes that give each surface its speed, or none where the material leaves it faster: by turns
-    /// (projected Gauss-Seidel), at once where surfaces are perpendicular to each other.
+    /// Normal impulses that give each surface its speed, or none where the material leaves it faster. They are found by
+    /// turns (projected Gauss-Seidel), at once where surfaces are perpendicular to each other.
     static void separate(Touch* list, int count, Vec3& v) {
         constexpr int kTurns = 20;  // a corner of 60 degrees errs by a quarter of the turn before: 1e-12 of the start
         for (int turn = 0; turn < (count > 1 ? kTurns : 1); ++turn)
@@ -445,9 +446,9 @@ private:
             }
     }
 
-    /// Surfaces at rest do no work: no push gives a node more energy than it had. What mirror particles ask for beyond
-    /// that is not the material's: in corners, and where few points shear, they show motion that is not there. The
-    /// answer lies between v and what is left where no push makes anything leave a surface, which is no faster than
+    /// Surfaces at rest do no work: no normal force gives a node more energy than it had. What mirror particles require
+    /// beyond that is not the material's. In corners, and where few points shear, they show motion that is not there.
+    /// The answer lies between v and what is left where no force makes anything leave a surface. That is no faster than
     /// what came. In oblique corners only: elsewhere the same would take from what rebounds, and from what spreads
     /// along a surface.
     [[gnu::noinline]] static Vec3 without_gain(Touch* list, int count, const Vec3& came, const Vec3& v, double most2) {
@@ -474,9 +475,9 @@ private:
         const Touch *begin, *end;
     };
     /// v, held by a stuck surface: along it, what points and mirror particles have, and nothing into others. Also
-    /// behind it, where mirror particles turn velocities round: with nodes at rest, material would stand still above a
-    /// surface that lies between them, and lose more to it at each step. But in a barrier mirror particles end halfway,
-    /// and points that keep their velocities would have each turn added to the one before.
+    /// behind it, where mirror particles turn velocities round. With nodes at rest, material would stand still above a
+    /// surface that lies between them. It would lose more to it at each step. But in a barrier mirror particles end
+    /// halfway. Points that retain their velocities would have each turn added to the one before.
     static Vec3 held(const SolidBody& body, const Vec3& mixed, const Vec3& v, const Touch* by, const Touches& all) {
         const bool still = by->contact.distance <= 0.0 && (flip || (body.barriers >> by->surface & 1));
         Vec3 kept = along_of(still ? Vec3::Zero() : mixed, v, by->contact.normal);
@@ -500,8 +501,8 @@ private:
         return speed2 > most2 ? Vec3(std::sqrt(most2 / speed2) * v) : v;
     }
 
-    /// Square of a node's speed before the step's impulses, where points that keep their velocities tell it; else zero.
-    /// Stress beside a surface presses a node into it in the step, and the surface takes that back.
+    /// Square of a node's speed before the step's impulses, where points that retain their velocities tell it; else
+    /// zero. Stress next to a surface presses a node into it in the step, and the surface takes that back.
     static double had2(const SolidBody& body, Index k) {
         if constexpr (!flip) return 0.0;
         const SolidBody::Node& had = body.flip_sums[k];
@@ -515,10 +516,10 @@ private:
         SurfaceWork* work;                ///< of all surfaces
     };
 
-    /// The velocity of a node near surfaces. `mixed` is what points and mirror particles gave it: free surfaces take
-    /// from it only what it has along their normal (along themselves mirror particles would brake material that
-    /// shears), and only as a push: surfaces never pull. Friction follows from the push. Records each surface's
-    /// impulse on the real material.
+    /// The velocity of a node near surfaces. `mixed` is what points and mirror particles gave it. Free surfaces take
+    /// from it only what it has along their normal. Along themselves mirror particles would brake material that shears.
+    /// Contact is unilateral: normal forces are compressive. Friction follows from the normal force. Records each
+    /// surface's impulse on the real material.
     static Vec3 meet(const SolidBody& body, SurfaceSet near, Index node, const Vec3& x, const SolidBody::Node& real,
                      const Vec3& mixed, double had2, const Given& given) {
         Touch list[kMostTouched];
@@ -551,14 +552,14 @@ private:
             else
                 given.impulse[t->surface] += real.m * (t->normal_change * normal + t->brake);
         }
-        // At the speed after the step, as the work of stress and weight: with that before them a surface would lose
+        // At the speed after the step, as the work of stress and weight. With that before them a surface would lose
         // what it undoes of both at once.
         given.work->contact_work += real.m * (contact_work - came).dot(v);
         given.work->friction -= real.m * (v - contact_work).dot(v);
         return v;
     }
 
-    /// What a barrier does to a node or a point: changes its speed, and moves it at the speed it then has.
+    /// What a barrier does to a node or a point. It changes its speed, and moves it at the speed it then has.
     struct ImpulseAt {
         double mass;
         Vec3 place;
@@ -566,7 +567,7 @@ private:
         Vec3 change, shift, v;
     };
     /// Records it with the face. Not inlined, like all that barriers need, so that scenes without them have the
-    /// bits they had: in place, it would share sums with other code, and so change what is fused there.
+    /// bits they had. In place, it would share sums with other code, and so change what is fused there.
     [[gnu::noinline]] static void list_impulse(const SolidBody& body, int surface, const Contact& c,
                                                const ImpulseAt& source, std::vector<FaceImpulse>& list) {
         const Vec3 impulse = source.mass * source.change;
@@ -578,8 +579,8 @@ private:
              (source.place - body.grid.geometry().origin).cross(impulse) + source.mass * source.shift.cross(source.v)});
     }
 
-    /// The same as move_nodes, where material beside the points gave to the nodes: it and they have one velocity, on
-    /// which surfaces then act. Of all impulses the points get the share of their mass, and what came to them from the
+    /// The same as move_nodes, where material adjacent to the points gave to the nodes. It and they have one velocity,
+    /// on which surfaces then act. Of all impulses the points get the share of their mass. What came to them from the
     /// other material is recorded apart. Sums of J are of points alone.
     [[gnu::noinline]] static void move_nodes_near_ghosts(SolidBody& body, Index n, Index tile, const Given& given) {
         const SurfaceSet near = body.near_nodes[static_cast<std::size_t>(n)];
@@ -681,8 +682,8 @@ private:
         ahead(&q.mass, 1), ahead(&q.rest_volume, 1), ahead(&q.j, 1);
     }
 
-    /// Not inlined: into the function that holds the block the compiler would find each node's address
-    /// anew, two more instructions a node.
+    /// Not inlined. In the function that holds the block the compiler would find each node's address anew, two more
+    /// instructions a node.
     [[gnu::noinline]] void scatter_points(const SolidBody& body, Index begin, Index end, double dt, const Box3d& box,
                                           NodeBlock& block) const {
         Index p = begin;
@@ -764,8 +765,8 @@ private:
         finish(body, p, lanes, now, from, tile, lane_sums, sums);
     }
 
-    /// Strain of the step: of laws in rates dt D; of those that carry a logarithmic one, of F = I + dt L, to second
-    /// order, ln(F F^T) / 2 = dt D + dt^2 (L L^T / 2 - D^2).
+    /// Strain of the step. Laws in rates have dt D. Those that carry a logarithmic one have that of F = I + dt L, to
+    /// second order: ln(F F^T) / 2 = dt D + dt^2 (L L^T / 2 - D^2).
     [[gnu::always_inline]] static SymOf<Double4> strain_of(const DeformationOf<Double4>& d) {
         const SymOf<Double4> rate = SymOf<Double4>::of(d.gradient);
         if constexpr (Law::kAverages) {
@@ -778,8 +779,8 @@ private:
         }
     }
 
-    /// The law's step. Of the work of the mean stress what is not stored is lost to the law: by flow, friction inside
-    /// and viscosity.
+    /// The law's step. Of the work of the mean stress what is not stored is lost to the law. It goes by flow, friction
+    /// inside and viscosity.
     [[gnu::always_inline]] void deform(const DeformationOf<Double4>& d, const Double4& rest_volume, Double4& j,
                                        Double4* state, BatchPoints& now) const {
         const SymOf<Double4> before = law_.stress(j, state, d.gradient);
@@ -792,7 +793,7 @@ private:
         now.material = (contracted(mean, strain_of(d)) - (has - had)) * rest_volume;
     }
 
-    /// Looks whether points are sound, puts them back before surfaces, and records them.
+    /// Checks that points are finite, puts them back before surfaces, and records them.
     [[gnu::always_inline]] static void finish(SolidBody& body, Index p, int lanes, BatchPoints& now,
                                               const Double4* from, Index tile, BatchSums& lane_sums, SolidSums& sums) {
         const Mask4 there = now.mass > 0.0;  // not beyond `lanes`
@@ -841,8 +842,7 @@ private:
             transpose(one[0].flip_sums, one[1].flip_sums, one[2].flip_sums, one[3].flip_sums, taken.flip_sums);
     }
 
-    /// Points that came to lie behind a surface are put back on it, without their speed into it: it rarely
-    /// happens.
+    /// Points that came to lie behind a surface are put back on it, without their speed into it. It rarely happens.
     static void move_out(SolidBody& body, SurfaceSet near, Index p, Vec3* impulse) {
         MaterialPoints& q = body.points;
         const double h = body.grid.cell();
@@ -858,8 +858,9 @@ private:
         }
     }
 
-    /// Points stay outside of barriers: one whose way from its last place crosses a face is put back on that
-    /// face, a hair before it so that it never starts inside; where there is no such place, where it was.
+    /// Points stay outside of barriers. If a point's way from its last place crosses a face, it is put back on that
+    /// face. It then lies a hair before the face so that it never starts inside. Where there is no such place, it is
+    /// put back where it was.
     [[gnu::noinline]] static void keep_out(SolidBody& body, Index tile, Index p, const Vec3& from) {
         constexpr int kTurns = 8;
         const SurfaceSet near = body.near_points[static_cast<std::size_t>(tile)] & body.barriers;

@@ -3,13 +3,13 @@
 namespace frana {
 
 /// tpic: the velocity's gradient and the stress's divergence by the shape function's slopes; the quieter
-/// pressure. apic: both by its first moments (Jiang et al. 2015; Hu et al. 2018); angular momentum is kept
+/// pressure. apic: both by its first moments (Jiang et al. 2015; Hu et al. 2018); angular momentum is conserved
 /// exactly.
 enum class Affine { tpic, apic };
 
-/// Quadratic B-splines along one axis, of a place f in [1/2, 3/2) cells behind the first of three nodes:
-/// weights, slopes [1/m] and distances [m]. Affine::apic takes 4 w d / h^2 for the slope, the first moment of
-/// the weights.
+/// Quadratic B-splines along one axis, of a place f in [1/2, 3/2) cells behind the first of three nodes. They have
+/// weights, slopes [1/m] and distances [m]. Affine::apic takes 4 w d / h^2 for the slope, the first moment of the
+/// weights.
 template <Affine affine, class Real>
 struct Spline {
     Real w[3], slope[3], d[3];

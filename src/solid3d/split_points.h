@@ -12,8 +12,8 @@ struct SplitPoint {
     Vec3 way;  ///< [cells]
 };
 
-/// Points with a gap of 0.8 to 1.75 cells to the nearest in one of six directions, which does not come closer; and half
-/// of which still has 1/64 of a cell's volume without stress. In their order. `gone`: as of Sorter3d::sort.
+/// Points with a gap of 0.8 to 1.75 cells to the nearest in one of six directions. That one does not come closer. Half of
+/// such a point still has 1/64 of a cell's volume without stress. In their order. `gone`: as of Sorter3d::sort.
 std::vector<SplitPoint> points_to_split(const MaterialPoints& points, const Grid3d& grid,
                                         const std::vector<std::uint8_t>& gone);
 

@@ -244,8 +244,8 @@ void MirrorParticles::slide_along(MirrorParticle& mirror, const Near& near, cons
     if (!mirror.held) mirror.slide[mirror.slides++] = turn.transpose() * near.contact.normal;
 }
 
-/// Reflects a point in each of the surfaces, and these mirror particles in those listed behind; at most three times in
-/// a row.
+/// Reflects a point in each of the surfaces, and these mirror particles in those listed behind. It does so at most
+/// three times in a row.
 void MirrorParticles::reflect(const Near* near, int count, const Vec3& x) {
     for (int n = 0; n < count && count_ < kMost; ++n) {
         const Vec3& normal = near[n].contact.normal;

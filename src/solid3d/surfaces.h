@@ -21,12 +21,12 @@ enum class Hold { free, stuck };
 class SurfaceFriction {
 public:
     virtual ~SurfaceFriction() = default;
-    /// Friction over push at a place.
+    /// Friction over normal force at a place.
     virtual double coefficient(const Vec3& x) const = 0;
 };
 
-/// A surface with material on the side that its normal points to. Barriers are solids: material may be all
-/// around them, and no point passes through, however thin they are and however fast it comes.
+/// A surface with material on the side that its normal points to. Barriers are solids. Material may be all around them,
+/// and no point passes through, however thin they are and however fast it comes.
 struct Surface {
     enum class Kind { plane, ground, prism, shape };
     Kind kind = Kind::plane;
@@ -52,15 +52,15 @@ struct Surface {
     bool inside(const Vec3& x) const;
 };
 
-/// For the ground the tangent plane below the point: exact for a plane, and of first order in distance over
+/// For the ground the tangent plane below the point. It is exact for a plane, and of first order in distance over
 /// radius of curvature. For a barrier its nearest face.
 Contact contact(const Surface& surface, const Vec3& x);
 
 /// All faces of a barrier that a point in cells of that size can meet, at most kMostContacts.
 int contacts(const Surface& barrier, const Vec3& x, double cell, Contact* list);
-/// Beside an edge that stands out a node carries pressure of all its faces: puts those that are not among the `count` of
-/// `list` behind them, in place of the one direction to the edge. Faces of a mesh that lie behind others of `surfaces`, as
-/// a house's foot below the ground, are none.
+/// At an edge that stands out a node carries pressure of all its faces. Appends those that are not among the `count` of
+/// `list`, in place of the one direction to the edge. Faces of a mesh that lie behind others of `surfaces`, as a
+/// house's foot below the ground, are none.
 MetFaces faces_at_edge(const std::vector<Surface>& surfaces, const Surface& barrier, const Vec3& x, double cell,
                        Contact* list, int count);
 /// Whether the way between two places, the first outside, goes into a barrier.
@@ -76,30 +76,29 @@ constexpr int kMostSurfaces = 32;
 SurfaceSet surfaces_near(const std::vector<Surface>& surfaces, const Vec3& low, const Vec3& high, double cell,
                          double more);
 
-/// How far beside their points mirror particles in that surface stand at most, along x or y, for points over a box from
-/// `low` to `high` [cells]. Without end for barriers.
+/// How far mirror particles in that surface stand at most from their points along x or y [cells]. The points are over a
+/// box from `low` to `high`. Without end for barriers.
 double sideways_reach(const Surface& surface, const Vec3& low, const Vec3& high);
 
 /// A mirror particle of a point and of what surrounds it: dx' = turn dx, v' = motion v. A free surface mirrors
 /// both; a stuck one turns velocities round, so that all of them vanish on it. In a barrier it shows only
-/// down to half of the barrier's thickness: the other half is for the other side's material.
+/// down to half of the barrier's thickness. The other half is for the other side's material.
 struct MirrorParticle {
     Vec3 place;  ///< of the point's mirror particle [m]
     Mat3 turn, motion;
-    /// Of the one stuck surface that it is a mirror particle in, and how far the point is above it: what flows there
+    /// Of the one stuck surface that it is a mirror particle in, and how far the point is above it. What flows there
     /// bends. Zero in barriers, and in corners of which not all surfaces are perpendicular to that one.
     Vec3 held_normal;
     double held_above;  ///< [m]
     bool held;          ///< in a stuck surface, or more
     bool of_barrier;    ///< of a barrier, or of more surfaces with a barrier among them
-    double share;       ///< of the point's mass and stress that it has: less than 1 beside edges of barriers
-    /// In corners of free surfaces: normals of those that it is a mirror particle in, as its point sees them (see
-    /// without_shear).
+    double share;       ///< of the point's mass and stress that it has: less than 1 at edges of barriers
+    /// In corners of free surfaces: normals of those that it is mirrored in, as its point has them (see without_shear).
     int slides;
     std::array<Vec3, 3> slide;
-    /// A free surface turns the shear beside it round: the mirror particle shows the speed along the surface with a
-    /// kink there. The surface itself asks for none of that. But the other one of a corner takes it for motion, and
-    /// would drive what shears. So a mirror particle in a corner shows its point's speed along the surface everywhere.
+    /// A free surface turns the shear next to it round. The mirror particle shows the speed along the surface with a
+    /// kink there. The surface itself does not use that. But the other one of a corner takes it for motion, and would
+    /// drive what shears. So a mirror particle in a corner shows its point's speed along the surface everywhere.
     Mat3 without_shear(Mat3 gradient) const {
         for (const Vec3* n = slide.data(); n < slide.data() + slides; ++n) {
             const Vec3 across = gradient * *n;
@@ -107,7 +106,7 @@ struct MirrorParticle {
         }
         return gradient;
     }
-    /// Places x with normal . x < least do not see it.
+    /// It has no effect at places x with normal . x < least.
     struct Cut {
         double normal[3];
         double least;  ///< [m]
@@ -121,10 +120,10 @@ struct MirrorParticle {
     }
 };
 
-/// The mirror particles of a point: one in each surface near it; in a corner also those of the mirror particles, which
-/// together leave no gap there, as long as they do not lie behind the other surface already. Surfaces whose normals are
-/// more than 120 degrees apart, such as both sides of a slice, have no common corner. The first four surfaces, or faces
-/// of barriers, of the list count.
+/// The mirror particles of a point: one in each surface near it. In a corner there are also those of the mirror
+/// particles, which together leave no gap there. They count as long as they do not lie behind the other surface
+/// already. Surfaces whose normals are more than 120 degrees apart, such as both sides of a slice, have no common
+/// corner. The first four surfaces, or faces of barriers, of the list count.
 class MirrorParticles {
 public:
     MirrorParticles(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec3& x, double cell);

@@ -42,8 +42,8 @@ struct Rankine {
     return (1.0 - e) / (1.0 + e);
 }
 
-/// THEORY (6): K along the principal axes of the strain rate [1/s]: active where the layer extends or rests, passive
-/// where it is squeezed much faster than its own fall takes, sqrt(depth / pull) [s] / 10.
+/// THEORY (6): K along the principal axes of the strain rate [1/s]. It is active where the layer extends or rests. It
+/// is passive where the layer is squeezed much faster than its own fall takes, sqrt(depth / pull) [s] / 10.
 template <class Real>
 [[gnu::always_inline]] inline Sym2Of<Real> earth_pressure_of(const Sym2Of<Real>& rate, Real depth, Real normal_gravity,
                                                              const Rankine& k) {

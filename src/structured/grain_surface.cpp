@@ -16,12 +16,12 @@ void for_each_in_reach(StructuredBody& body, Body&& visit) {
 /// Behind an obstacle's face, where next to nothing is open.
 bool blocked(const StructuredBody& body, Index k) { return body.ground[k].open <= kLeastOpen; }
 
-/// Beside obstacles depth is what lies on the open share of a node.
+/// Next to obstacles depth is what lies on the open share of a node.
 void widen_at_obstacles(StructuredBody& body) {
     for_each_in_reach(body, [&](Index k) { body.flow.nodes.column_mass[k] /= body.ground[k].open; });
 }
 
-/// Behind obstacles the surface goes on as high as it is beside them: a face is no shore, and nothing pulls there.
+/// Behind obstacles the surface goes on as high as next to them. A face is no shore and exerts no tension.
 void level_behind_obstacles(StructuredBody& body) {
     Nodes& nodes = body.flow.nodes;
     const Index up = body.grid.stride();
@@ -36,7 +36,7 @@ void level_behind_obstacles(StructuredBody& body) {
     });
 }
 
-/// Beside obstacles the depth of blocked nodes is no depth to smooth with.
+/// Next to obstacles the depth of blocked nodes is no depth to smooth with.
 void plain_at_obstacles(StructuredBody& body) {
     const Index up = body.grid.stride();
     for_each_in_reach(body, [&](Index k) {

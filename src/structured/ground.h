@@ -8,8 +8,8 @@
 
 namespace frana {
 
-/// Gravity at a place: along the plane of the columns, and across the ground [m/s^2]; and how the ground
-/// slopes against that plane [1]. Columns leave where there is no ground.
+/// Gravity at a place [m/s^2]: along the plane of the columns, and across the ground. Also how the ground slopes
+/// against that plane [1]. Columns leave where there is no ground.
 struct GroundGravity {
     double x = 0.0, y = 0.0, across = constants::kGravity;
     double slope_x = 0.0, slope_y = 0.0;
@@ -18,9 +18,9 @@ struct GroundGravity {
 };
 using Ground = std::function<GroundGravity(double x, double y)>;
 
-/// THEORY (2): over terrain in map coordinates, given its slope (db/dx, db/dy): what slides without friction has the
-/// horizontal acceleration -g_z grad b, g_z = g / (1 + |grad b|^2). A solid keeps its length on the map over
-/// a break of slope.
+/// THEORY (2): over terrain in map coordinates, given its slope (db/dx, db/dy). What slides without friction has the
+/// horizontal acceleration -g_z grad b, g_z = g / (1 + |grad b|^2). A solid's length on the map stays the same over a
+/// break of slope.
 inline Ground terrain_ground(std::function<Vec2(double x, double y)> slope, double g = constants::kGravity) {
     return [slope = std::move(slope), g](double x, double y) {
         const Vec2 s = slope(x, y);

@@ -65,8 +65,8 @@ struct GroundOf {
     return brought(body, k, mass) + dt / bound * FlatOf<double>{d.fx, d.fy};
 }
 
-/// What is left of grains' pushes at a node once they are shares (share_out): K (1 - f), 1 - f, and 2 cells times
-/// div(K (1 - f)). Beside dry nodes it goes on as it is here.
+/// What is left of grains' pressures at a node once they are shares (share_out). It is K (1 - f), 1 - f, and 2 cells
+/// times div(K (1 - f)). Next to dry nodes it goes on as it is here.
 template <class Real>
 struct GrainsOf {
     Sym2Of<Real> k;
@@ -155,10 +155,10 @@ struct GrainForceOf {
     [[gnu::always_inline]] Real weight() const { return 1.0 + share * (own_weight - 1.0); }
 };
 
-/// As in the depth-averaged flow: the slope of the free surface instead of the ground's, for their share s of the mass; the
-/// rest of their earth pressure, K - 1, along with it; what either lacks where s or K changes, -g_z h / 2 div(s K); and the
-/// artificial viscosity at bores. Besides the share of their weight that the whole node is given. `bears`: share of the
-/// weight on the bed. `v`: velocity over a bend of the bed, which only grains feel.
+/// As in the depth-averaged flow. For their share s of the mass, the slope of the free surface replaces the ground's.
+/// The rest of their earth pressure, K - 1, goes along with it. So do what either lacks where s or K changes, -g_z h /
+/// 2 div(s K), and the artificial viscosity at bores. Besides the share of their weight that the whole node is given.
+/// `bears`: share of the weight on the bed. `v`: velocity over a bend of the bed, which only grains feel.
 template <class Real>
 [[gnu::always_inline]] inline GrainForceOf<Real> grain_force(const StructuredBody& body, Index k,
                                                              const GroundOf<Real>& ground, double bears,
@@ -183,7 +183,7 @@ template <class Real>
 /// Of four nodes with wet ones around.
 [[gnu::always_inline]] inline Double4 front_at(const Flow&, Index, Double4) { return Double4{}; }
 
-/// `driven`, less what grains that climb a bank lose besides (SteepBed::climb).
+/// `driven`, less what grains that climb a step in the bed lose besides (SteepBed::climb).
 template <class Real>
 [[gnu::always_inline]] inline FlatOf<Real> climbed(const StructuredBody& body, Index k,
                                                    const GrainForceOf<Real>& grains, double bears,
@@ -197,7 +197,7 @@ template <class Real>
     return driven + bears * grains.share * (left - driven);
 }
 
-/// Velocity in the middle of a step, driven and braked by Coulomb friction: it makes what a bend does second order.
+/// Velocity in the middle of a step, driven and braked by Coulomb friction. It makes what a bend does second order.
 template <class Real, class Law>
 [[gnu::always_inline]] inline FlatOf<Real> midway(const Law& law, const GroundOf<Real>& ground, Real across,
                                                   const FlatOf<Real>& before, const FlatOf<Real>& acceleration,
@@ -208,8 +208,8 @@ template <class Real, class Law>
     return select(speed > 0.0, max(Real{}, 1.0 - lost / max(speed, Real{} + 1e-300)), Real{}) * v;
 }
 
-/// A bed law's friction over a step that would change `before` to `driven` (law/bed/node_friction.h); `across`: gravity
-/// that presses on the ground [m/s^2].
+/// A bed law's friction over a step that would change `before` to `driven` (law/bed/node_friction.h). `across`: gravity
+/// normal to the ground [m/s^2].
 template <class Real, class Law>
 [[gnu::always_inline]] inline FlatOf<Real> braked(const Law& law, const StructuredBody& body,
                                                   const GroundOf<Real>& ground, Real across, Real depth,

@@ -38,14 +38,16 @@ Vec2 surface_slope(const StructuredBody& body, Index k) {
     return {along(1), along(body.grid.stride())};
 }
 
-/// Rate at which water speeds up its slip where grains are not spread evenly over the depth (van den Bout et al. 2021, sec.
-/// 2.4; its share of mobile water, alpha_u, stands above and below): stable only where drag is stronger [1/s].
+/// Rate at which water speeds up its slip where grains are not spread evenly over the depth [1/s]. It is stable only
+/// where drag is stronger. (van den Bout et al. 2021, sec. 2.4; its share of mobile water, alpha_u, stands above and
+/// below.)
 double spread_rate(const WaterViscosity& viscosity, const Mixture& mixture, double total) {
     return viscosity.kinematic * viscosity.profile * mixture.grains() / (total * total);
 }
 
-/// What the columns of a node released in the last step joins the water at `to`, with the velocity that points brought the
-/// node: the structure's stress pushes what stays bound. At the edge of columns it would push thin nodes to any speed.
+/// What the columns of a node released in the last step joins the water at `to`. It has the velocity that points
+/// brought the node. The structure's stress acts on what stays bound. At the edge of columns it would speed up thin
+/// nodes without limit.
 void release_to(StructuredBody& body, Index k, Index to) {
     FreeWater& water = *body.water;
     const double depth = body.bound[k].released / (body.grid.cell() * body.grid.cell());
@@ -75,7 +77,7 @@ Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, con
     FreeWater& water = *body.water;
     const StructuredBody::Bound& bound = body.bound[k];
     // Columns fill the open share of the water's cell. There they are as deep as elsewhere, and there alone both hold on to
-    // one another; momentum is that of the whole cell, so that what one gives the other gets.
+    // one another. Momentum is that of the whole cell, so that what one gives the other gets.
     const double area = body.grid.cell() * body.grid.cell(), open = body.ground[k].open;
     const double h = water.h[k], total = met.depth + h, solids = bound.solids / (open * area);
     const double confined = std::max(0.0, met.depth - solids), fluid = confined + h;
@@ -95,7 +97,7 @@ Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, con
     if (water.viscosity.solid_gradient) {
         const double rate = spread_rate(water.viscosity, mixture, total), reduced = c.mass * u.mass / (c.mass + u.mass);
         const double holds = by.drag * (by.power == 2 ? slip.norm() : 1.0) / reduced;
-        // It is a part of the viscous stress at the bed, which slows the water and does not drive it; and what that stops
+        // It is a part of the viscous stress at the bed, which slows the water and does not drive it. What that stops
         // within a step slips no more.
         const double brakes = linear_drag(water.viscosity, total), length = slip.norm();
         if (rate > holds)

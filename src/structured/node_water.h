@@ -23,12 +23,12 @@ struct Met {
 bool has_water(const StructuredBody& body, Index k);
 /// A node's columns, without what they released in the last step, and what the water bears of them.
 Met meet_water(const StructuredBody& body, Index k);
-/// Drag and virtual mass between a node's columns and its water over a step that brought the columns from `before`
-/// to `driven`; returns their velocity. What both lose is the impulse times the mean slip.
+/// Drag and virtual mass between a node's columns and its water over a step. It brought the columns from `before` to
+/// `driven`. Returns their velocity. What both lose is the impulse times the mean slip.
 Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, const Vec2& driven, double dt,
           StructuredTally& tally);
-/// What the columns released in the last step joins the water, with the velocity that points brought; of nodes beyond the grid's
-/// sides, which have no water, in one order at the nearest that has.
+/// What the columns released in the last step joins the water, with the velocity that points brought. Nodes beyond the
+/// grid's sides have no water. What is released there joins the nearest node that has, in one order.
 void release_to_nodes(StructuredBody& body);
 
 }  // namespace frana

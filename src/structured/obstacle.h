@@ -9,21 +9,21 @@
 
 namespace frana {
 
-/// A box with sides along x and y; a side at infinity makes a wall. It pushes what moves into it and never
-/// pulls; friction along its faces is `friction` times the push.
+/// A box with sides along x and y; a side at infinity makes a wall. Contact is unilateral: normal forces are
+/// compressive. Friction along its faces is `friction` times the normal force.
 struct Obstacle {
     static constexpr double kFar = std::numeric_limits<double>::infinity();
     Vec2 low{-kFar, -kFar}, high{kFar, kFar};  ///< [m]
     double friction = 0.0;                     ///< mu [1]
 
-    /// THEORY (9): the velocity v [m/s] of a node at x [m]: inside, and no farther than `slack` [m] from the faces,
+    /// THEORY (9): the velocity v [m/s] of a node at x [m]. Inside, and no farther than `slack` [m] from the faces,
     /// nothing goes through the nearest face.
     Vec2 met(const Vec2& x, const Vec2& v, double slack) const {
         const double depth[4] = {x.x() - low.x(), high.x() - x.x(), x.y() - low.y(), high.y() - x.y()};
         const int face = static_cast<int>(std::min_element(depth, depth + 4) - depth);
         if (!(depth[face] >= -slack)) return v;
         const int axis = face / 2;
-        const double into = face % 2 == 0 ? v[axis] : -v[axis];  // faces look down the axis, then up
+        const double into = face % 2 == 0 ? v[axis] : -v[axis];  // faces point down the axis, then up
         if (into <= 0.0) return v;
         const double along = v[1 - axis], brake = friction * into;
         Vec2 left = Vec2::Zero();
@@ -55,7 +55,7 @@ inline double covered(const Vec2& low, const Vec2& high, const Vec2& node, doubl
 constexpr double kLeastOpen = 0.25;
 
 /// Share of a node's shape function that material can fill: outside of all obstacles, of which no three
-/// overlap. Mass over this share is the depth beside a wall. Not below `least`.
+/// overlap. Mass over this share is the depth at a wall. Not below `least`.
 inline double open_share(const std::vector<Obstacle>& obstacles, const Vec2& node, double cell, double least) {
     double open = 1.0;
     for (std::size_t a = 0; a < obstacles.size(); ++a) {

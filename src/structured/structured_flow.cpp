@@ -13,8 +13,8 @@
 namespace frana {
 namespace {
 
-/// Cells a point may have moved since the last sort: tiles of one colour stand 16 nodes apart and reach 2
-/// nodes and twice the drift.
+/// Cells a point may have moved since the last sort. Tiles of one colour stand 16 nodes apart and reach 2 nodes and
+/// twice the drift.
 constexpr double kDriftLimit = 2.0;
 
 constexpr Index kStepsBetweenSplits = 3;
@@ -149,7 +149,7 @@ void StructuredFlow::take_tiles() {
     left_ = body_.active.work;
     lists_.list_tiles(body_.grid, body_.active);
     left_.reserve(body_.active.work.capacity());  // grows with the list, not a sort later
-    for (const Index tile : left_) {              // what nobody clears any more must not be seen when columns come back
+    for (const Index tile : left_) {              // what is not cleared any more must not show when columns return
         if (body_.active.in_work[static_cast<std::size_t>(tile)]) continue;
         const Index first = body_.grid.at(body_.grid.tile_i(tile), body_.grid.tile_j(tile));
         for (Index j = 0; j < kTile; ++j) {
@@ -164,7 +164,7 @@ void StructuredFlow::take_tiles() {
     learn_ground();
 }
 
-/// Asks for the ground and for obstacles at the nodes of tiles that are new to the list.
+/// Finds the ground and obstacles at the nodes of tiles that are new to the list.
 void StructuredFlow::learn_ground() {
     const GridGeometry& g = body_.grid.geometry();
     for (const Index tile : body_.active.work) {
@@ -184,9 +184,9 @@ void StructuredFlow::learn_ground() {
 
 double StructuredFlow::step_length(double until) const { return status_.step_towards(until, longest_step()); }
 
-/// Sound and flow pass part of a cell. Nothing here bounds the step for grains alone: their earth pressure
-/// grows so fast with the rate of squeezing (earth_pressure.h) that it needs steps below cell^2 / (5 (Kp -
-/// Ka) sqrt(g_z h^3)), or is noisy; the elastic step is mostly near that. Hydrostatic grains do not.
+/// Sound and flow pass part of a cell. Nothing here bounds the step for grains alone. Their earth pressure grows fast
+/// with the rate of squeezing (earth_pressure.h). It needs steps below cell^2 / (5 (Kp - Ka) sqrt(g_z h^3)), or is
+/// noisy. The elastic step is mostly near that. Hydrostatic grains do not.
 double StructuredFlow::longest_step() const {
     const bool flows = sound_speed_ == 0.0 || (hydrostatic_ && status_.damage >= 1.0);  // all grains, to the last bit
     return flows ? flow_step(wave_) : cfl_ * body_.grid.cell() / (sound_speed_ + wave_);

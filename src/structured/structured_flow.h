@@ -1,6 +1,6 @@
 #pragma once
-// Structured solids on the ground: depth-averaged columns that are elastic, yield and break into grains, by
-// an explicit material point method with quadratic B-splines (TPIC). One material, dry or beside free water.
+// Structured solids on the ground: depth-averaged columns that are elastic, yield and break into grains. The material
+// point method is explicit, with quadratic B-splines (TPIC). One material, dry or with free water.
 #include <memory>
 #include <optional>
 #include <vector>
@@ -48,8 +48,9 @@ struct StructuredScene {
     ColumnMaterial material;
     double share = 1.0;                    ///< of the solids that have structure, undamaged [1]
     double gravity = constants::kGravity;  ///< [m/s^2]
-    bool hydrostatic = false;  ///< grains push sideways as they do down, K = 1; otherwise by Rankine's Ka to Kp
-    /// The bed under the grains' surface, on the map, asked for when there are grains. None: a plane that the columns'
+    bool hydrostatic = false;  ///< horizontal pressure of grains equals the vertical one, K = 1; otherwise by Rankine's
+                               ///< Ka to Kp
+    /// The bed under the grains' surface, on the map, needed when there are grains. None: a plane that the columns'
     /// coordinates lie in, and gravity along it by the ground.
     std::function<BedGeometry(const TileGrid&)> bed;
     bool curved = false;  ///< that bed bends, and grains feel it
@@ -64,7 +65,7 @@ struct StructuredScene {
 
 /// Impulses on the material since the start [kg m/s].
 struct StructuredImpulses {
-    Flat2 weight{0, 0};    ///< gravity along the plane, with the ground's push and that of free water's pressure
+    Flat2 weight{0, 0};    ///< gravity along the plane, with the ground's force and that of free water's pressure
     Flat2 pressure{0, 0};  ///< of grains, against the ground and by the form that is not quite in balance
     Flat2 friction{0, 0};  ///< at the bed
     Flat2 obstacles{0, 0};
@@ -144,13 +145,14 @@ struct StructuredBody {
     };
     struct NodeGround {
         double x, y, across, slope_x, slope_y, elevation;  ///< of the ground
-        double open;                                       ///< share of the node that is open, 0 where nobody asked yet
+        double open;                                       ///< share of the node that is open, 0 where it was not
+                                                           ///< needed yet
         double exit;                                       ///< 1 where there is no ground, 2 in a hole of the terrain
     };
     LazyArray<GrainPressure> grain_pressure;
     LazyArray<Moved> moved;
     LazyArray<NodeGround> ground;
-    /// What columns are made of, beside free water only [m^3].
+    /// What columns are made of, only together with free water [m^3].
     struct alignas(32) Bound {
         double volume, released, solids, structured;
     };
@@ -163,19 +165,20 @@ struct StructuredBody {
     Rankine rankine;
     BedLaw bed_law;  ///< where flow.laws has none
     double density, share, gravity;
-    bool grains = false;     ///< some column is broken or has grains beside its structure
-    bool has_exits = false;  ///< some node that was asked for has no ground
+    bool grains = false;     ///< some column is broken or has grains besides its structure
+    bool has_exits = false;  ///< some node that was checked has no ground
     bool mapped = false;     ///< coordinates are on the map, and flow has the bed; otherwise they lie in its plane
     bool curved = false;     ///< there, grains feel how the bed bends
 };
 
-/// How long forces act in a step, and how long columns then drift [s]. With grains velocities stand half a step behind the
-/// places (leapfrog), as those of the depth-averaged flow; what is whole begins with a whole step.
+/// How long forces act in a step, and how long columns then drift [s]. With grains velocities are half a step behind
+/// the places (leapfrog), as those of the depth-averaged flow. What is intact begins with a whole step.
 struct StepTimes {
     double velocity_dt, drift;
 };
 
-/// Calls work(grains, water), types that say what there is in a run: asked once a loop, and not of every column.
+/// Calls work(grains, water), types that say what there is in a run. They are chosen once a loop, and not for every
+/// column.
 template <class Work>
 void with_kinds(const StructuredBody& body, Work&& work) {
     const auto with_water = [&](auto grains) {
@@ -231,7 +234,7 @@ public:
     Vec2 position(Index p) const;
     /// Momentum + carried out - given - impulses: round-off [kg m/s]
     Vec2 momentum_residual() const;
-    /// Saves the state between two steps, or takes it up again with all its bits, in a flow of the same scene.
+    /// Saves the state between two steps, or restores it with all its bits, in a flow of the same scene.
     void serialize(Archive& archive);
 
 private:

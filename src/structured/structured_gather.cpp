@@ -1,4 +1,4 @@
-// What columns take from the nodes in a step of structured solids, and what they make of it: four go side by side.
+// What columns take from the nodes in a step of structured solids, and what they make of it. Four are done at once.
 #include <algorithm>
 #include <cmath>
 
@@ -124,7 +124,7 @@ struct Sums {
     return (0.5 * body.share / of.young) * load(&q.volume[p], lanes) * (1.0 - damage) * twice;
 }
 
-/// The ground at the node nearest to a column, of the grid's own nodes: beyond its sides that of its edge.
+/// The ground at the node nearest to a column, of the grid's own nodes. Beyond its sides it is that of its edge.
 const StructuredBody::NodeGround& ground_below(const StructuredBody& body, Index p) {
     const auto nearest = [](double u, Index count) {
         return static_cast<Index>(std::floor(std::clamp(u, 0.0, static_cast<double>(count - 1)) + 0.5));

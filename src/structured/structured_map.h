@@ -1,5 +1,5 @@
 #pragma once
-// Structured solids and their free water seen from above: depth and velocity on the nodes, and what each node ever saw.
+// Structured solids and their free water seen from above: depth and velocity on the nodes, and their peaks.
 #include "mpm/node_peak.h"
 #include "observe/archive.h"
 #include "shallow/bed_geometry.h"
@@ -23,14 +23,14 @@ public:
     /// How fast what moves along the map with (vx, vy) at a node climbs [m/s].
     double climb(Index node, double vx, double vy) const { return vx * path_[node].x + vy * path_[node].y; }
     const NodePeak& peak(Index node) const { return peaks_[node]; }
-    /// Depth of columns on a node [m], also where parts of them reach and none's shape function does. Beside water it
+    /// Depth of columns on a node [m], also where parts of them reach and none's shape function does. With water it
     /// is spread by shape functions, and nothing lies beyond them.
     static double depth_of(const StructuredBody& body, Index k) {
         if (body.moved[k].depth > 0.0 || !body.grains || body.water) return body.moved[k].depth;
         return body.flow.nodes.column_mass[k] / (body.density * body.flow.area);
     }
-    /// Gravity by which the columns of a node press on the bed, on a bend of it too, and on the water that bears a part of
-    /// them [m/s^2].
+    /// Gravity by which a node's columns press on the bed and on the water that bears a part of them [m/s^2]. It
+    /// holds on a bend of the bed too.
     static double pressing(const StructuredBody& body, Index k);
     /// Whether the node is near material: elsewhere the body's nodes are of another time.
     static bool is_in_reach(const StructuredBody& body, Index i, Index j);

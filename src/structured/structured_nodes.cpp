@@ -1,5 +1,4 @@
-// The loops over the nodes in a step of structured solids: what forces, bed, obstacles and free water make of their
-// velocity.
+// The loops over the nodes in a step of structured solids. Forces, bed, obstacles and free water change their velocity.
 #include <cmath>
 
 #include "structured/node_forces.h"
@@ -36,7 +35,7 @@ template <class Real>
 struct DrivenOf {
     Real mass, across, depth;
     FlatOf<Real> before, driven;
-    Real law_depth;         ///< that friction sees: without its 2-cell wave where the surface has none either [m]
+    Real law_depth;         ///< for friction: without its 2-cell wave where the surface has none either [m]
     FlatOf<Real> beyond{};  ///< of what drove it, by earth pressure that is not hydrostatic [m/s]
 };
 
@@ -187,7 +186,7 @@ void move_wet(NodeStep<Law>& step, Index k) {
         node.beyond = dt * grains.beyond;
         impulse.pressure += met.mass * vec(thrust);
     }
-    if (has_water(body, k)) {  // drag knows what friction holds, and friction then what drag does
+    if (has_water(body, k)) {  // drag uses what friction holds, and friction then what drag does
         const auto& law = step.template law_at<double>(k);
         const FlatOf<double> held = braked(law, body, ground, node.across, met.depth, before, node.driven, {dt, 0.0});
         const Vec2 dragged = drag(body, k, met, vec(before), vec(held), dt, step.tally) - vec(held);

@@ -29,7 +29,7 @@ struct StructuredPoints {
 
     Index count() const { return static_cast<Index>(x.size()); }
 
-    /// The one list of floating-point columns: sorting and growing walk it.
+    /// The one list of floating-point columns, for sorting and growing.
     template <class Visit>
     void each(Visit&& visit) {
         each_of(*this, visit);

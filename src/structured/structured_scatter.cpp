@@ -1,4 +1,5 @@
-// What columns bring to the nodes in a step of structured solids: four go side by side, and sums over nodes have one order.
+// What columns bring to the nodes in a step of structured solids. Four are done at once, and sums over nodes have one
+// order.
 #include <algorithm>
 
 #include "base/touch.h"
@@ -49,7 +50,7 @@ Double4 bound_of(const StructuredBody& body, Index p) {
     const Sym2Of<Double4> rate{load(&q.cxx[p], lanes), load(&q.cyy[p], lanes),
                                0.5 * (load(&q.cxy[p], lanes) + load(&q.cyx[p], lanes))};
     const Double4 normal_gravity = load(&q.normal_gravity[p], lanes), none = {};
-    // Nothing presses on the bed where water bears all: then nothing pushes either.
+    // Nothing presses on the bed where water bears all: then there is no pressure either.
     const Double4 layer = select(normal_gravity > 0.0, load(&q.layer[p], lanes), none),
                   across = select(normal_gravity > 0.0, normal_gravity, all(1.0));
     const Sym2Of<Double4> k = earth_pressure_of<Double4>(rate, layer, across, body.rankine);

@@ -1,5 +1,5 @@
-// The state of structured columns between two steps, as it is kept and taken up again: the columns in their order
-// with the tiles they are sorted by, and the sums of the run. Nodes start empty in every step.
+// The state of structured columns between two steps, as it is serialized. It is the columns in their order with the
+// tiles they are sorted by, and the sums of the run. Nodes start empty in every step.
 #include "mpm/stored_points.h"
 #include "structured/structured_flow.h"
 

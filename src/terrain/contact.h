@@ -21,8 +21,8 @@ struct Entry {
     int face;
 };
 
-/// Cells from a surface within which the mirror image of a point touches nodes that material touches: a point
-/// reaches 3/2 cells along each axis, so its image counts up to 3 (|n_x| + |n_y| + |n_z|) cells from it.
+/// Cells from a surface within which the mirror image of a point reaches nodes that material reaches. A point reaches
+/// 3/2 cells along each axis. So its image counts up to 3 (|n_x| + |n_y| + |n_z|) cells from it.
 inline double mirror_reach(const Vec3& normal) { return 3.0 * normal.lpNorm<1>(); }
 
 /// Of any normal.

@@ -35,8 +35,7 @@ struct DistanceField {
     /// Beyond the grid the value goes on as it left it, and never below the distance from the grid.
     Contact contact(const Vec3& x) const;
     bool inside(const Vec3& x) const { return contact(x).distance < 0.0; }
-    /// Whether the way between two places, the first outside, goes into the solid, looked at every half
-    /// spacing.
+    /// Whether the way between two places, the first outside, goes into the solid, sampled at every half spacing.
     bool enters(const Vec3& from, const Vec3& to, Entry& entry) const;
     /// Length of the solid from a place on its surface into the unit direction `way` [m]; a spacing at least.
     double thickness(const Vec3& from, const Vec3& way) const;

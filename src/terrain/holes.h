@@ -18,7 +18,7 @@ struct Holes {
 bool has_nodata(const Raster& bed);
 Holes holes_of(const Raster& bed);
 
-/// What the user should know of mass that was lost in holes, of all that the run had [kg]; nothing when none was.
+/// A remark for the user on mass that was lost in holes, of all that the run had [kg]. Nothing when none was.
 std::vector<std::string> remarks_on_lost(double lost, double all);
 
 }  // namespace frana

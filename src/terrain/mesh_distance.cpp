@@ -34,7 +34,7 @@ Nearest on_edge(const Vec3& x, const Vec3& a, const Vec3& way, std::size_t first
     return near;
 }
 
-/// Above its inside a place is as near to the triangle as to its plane, beside it as to one of its edges.
+/// Above its inside a place is as near to the triangle as to its plane. Elsewhere it is as near as to one of its edges.
 Nearest on_triangle(const Vec3& x, const std::array<Vec3, 3>& corner) {
     const Vec3 ab = corner[1] - corner[0], ac = corner[2] - corner[0], ax = x - corner[0];
     const double bb = ab.squaredNorm(), bc = ab.dot(ac), cc = ac.squaredNorm(), xb = ax.dot(ab), xc = ax.dot(ac);
@@ -52,8 +52,8 @@ Nearest on_triangle(const Vec3& x, const std::array<Vec3, 3>& corner) {
     return near;
 }
 
-/// A tree of boxes around triangles, and at every part of every triangle a normal that tells inside from outside for
-/// the places that are nearest to it: of an edge the sum of its two triangles', of a corner that of all around it,
+/// A tree of boxes around triangles. Every part of a triangle has a normal that tells inside from outside for the
+/// places nearest to it. Of an edge it is the sum of its two triangles'. Of a corner it is that of all around it,
 /// weighted by their angles there (Baerentzen and Aanaes 2005).
 class MeshTree {
 public:

@@ -1,6 +1,6 @@
 #pragma once
-// A grid of nodes and a scalar field on it. The nodes are the centres of square pixels, so that a raster with
-// the same pixels as the elevation model and the solver's grid are one and the same thing.
+// A grid of nodes and a scalar field on it. The nodes are the centres of square pixels. So a raster with the same
+// pixels as the elevation model and the solver's grid are the same thing.
 #include <array>
 #include <cmath>
 #include <limits>

@@ -17,29 +17,30 @@ struct SharpEdge {
     std::array<bool, 2> bent;    ///< at its start and its end: whether an edge that stands in begins there
 };
 
-/// A face beside sharp edges as a place sees it.
+/// A face adjacent to sharp edges, as it is for a place.
 struct EdgeFace {
     int face;
     double distance;  ///< of the place from the face's plane, negative behind it [m]
     Vec3 normal;
-    /// How far beyond the face's edges the place's foot lies, negative on the face, along the axes: over the sum of the
-    /// entries of the way there, as shape functions reach [m].
+    /// How far beyond the face's edges the place's foot lies along the axes, negative on the face [m]. It is taken over
+    /// the sum of the entries of the way there, as shape functions reach.
     double beyond;
 };
 
-/// The sharp edges of a mesh, found by blocks of space. What a field of distances knows of them is rounded by half its
-/// spacing, and of two faces that are as near it tells neither.
+/// The sharp edges of a mesh, found by blocks of space. A field of distances has them rounded by half its spacing. Of
+/// two faces that are as near it tells neither.
 class SharpEdges {
 public:
     static constexpr int kMostFaces = 8;
     SharpEdges() = default;
-    /// Of a mesh whose triangles all run the same way round; `origin`, `end` [m]: of the field; it is looked up with places
-    /// up to `reach` [m] from its edges.
+    /// Of a mesh whose triangles all run the same way round. `origin`, `end` [m]: of the field. Places that are queried
+    /// lie up to `reach` [m] from its edges.
     SharpEdges(const TriangleMesh& mesh, const Vec3& origin, const Vec3& end, double reach);
 
     bool empty() const { return edges_.empty(); }
     /// Faces of edges that lie no farther from a place than `radius` [m]: at most kMostFaces of them. An edge counts to
-    /// `over` [m] along each axis beyond its ends, but not beyond one at which another edge stands in. x is counted from the field's origin.
+    /// `over` [m] along each axis beyond its ends. It does not beyond an end where another edge adjoins. x is counted
+    /// from the field's origin.
     int faces_near(const Vec3& x, double radius, double over, EdgeFace* list) const;
 
 private:

@@ -1,18 +1,18 @@
 #pragma once
 // Shallow water at a face between two cells: limited slopes, hydrostatic reconstruction (Audusse et al. 2004,
-// doi:10.1137/S1064827503431090), and the flux of Harten, Lax and van Leer with the contact wave (HLLC, Toro
-// 2001). Functions are for one face (Real is double) or for four side by side (Double4). THEORY (3), (5) to (7).
+// doi:10.1137/S1064827503431090). The flux is that of Harten, Lax and van Leer with the contact wave (HLLC, Toro 2001).
+// Functions are for one face (Real is double) or for four side by side (Double4). THEORY (3), (5) to (7).
 #include "base/simd.h"
 
 namespace frana {
 
-/// The change of a quantity over a cell, from its changes to the cell before (a) and the cell behind (b):
-/// min(theta |a|, |a + b| / 2, theta |b|), or 0 at an extremum. theta = 1 is minmod, 2 is van Leer's MC;
-/// values at faces stay between those of the neighbours for theta <= 2.
-/// MC is the default: against minmod it takes a third off the depth's error in Stoker's dam break, a quarter
-/// off in the round one, half off in the planar bowl and two thirds off in the radial one (100 cells), and
-/// Stoker's total variation stays within 1 % of the exact one. Between them, 1.3 is a fifth better than MC in
-/// the planar bowl of 200 cells.
+/// The change of a quantity over a cell, from its changes to the cells before (a) and behind (b). It is
+/// min(theta |a|, |a + b| / 2, theta |b|), or 0 at an extremum. theta = 1 is minmod, 2 is van Leer's MC; values at
+/// faces stay between those of the neighbours for theta <= 2.
+/// MC is the default. Against minmod it takes a third off the depth's error in Stoker's dam break, a quarter in the
+/// round one. It takes half off in the planar bowl and two thirds off in the radial one (100 cells). Stoker's total
+/// variation stays within 1 % of the exact one. Between them, 1.3 is a fifth better than MC in the planar bowl of 200
+/// cells.
 template <class Real>
 [[gnu::always_inline]] inline Real limited(Real a, Real b, double theta) {
     const Real none = {}, mean = 0.5 * (a + b);
@@ -33,13 +33,13 @@ template <class Real>
 struct FaceFlux {
     Real mass;           ///< [m^2/s]
     Real along, across;  ///< momentum that the mass carries [m^3/s^2]
-    Real low, high;      ///< all other momentum through the face, less the pressure g h^2 / 2 of the water that
-                         ///< stands there after reconstruction, on either side [m^3/s^2]
+    Real low, high;      ///< all other momentum through the face [m^3/s^2]. Less the pressure g h^2 / 2 of the water
+                         ///< that stands there after reconstruction, on either side
 };
 
-/// The flux between two sides under gravity g [m/s^2]. Water sees the higher ground of both sides: what
-/// stands level does not flow, to the last bit, and a dry side higher than the water is a wall. Speeds of the
-/// waves are Davis's, beside dry ground those of a dam break.
+/// The flux between two sides under gravity g [m/s^2]. The ground of the face is the higher one of both sides. What
+/// stands level does not flow, to the last bit. A dry side higher than the water is a wall. Speeds of the waves are
+/// Davis's, next to dry ground those of a dam break.
 template <class Real>
 [[gnu::always_inline]] inline FaceFlux<Real> face_flux(const FaceSide<Real>& l, const FaceSide<Real>& r, Real g) {
     const Real none = {};

@@ -13,8 +13,8 @@ struct Side {
     double outward;      ///< 1 or -1
 };
 
-/// Speed out of the grid of the water beyond a side that holds a level, `depth` deep there [m/s]. The invariant u + 2 c that
-/// comes out of the grid gives it, so that the side's depth is that of the level; none comes in faster than from rest.
+/// Speed out of the grid of the water beyond a side that holds a level, `depth` deep there [m/s]. The invariant u + 2 c
+/// that comes out of the grid gives it. So the side's depth is that of the level. None comes in faster than from rest.
 double speed_beyond(const WaterBlock& block, const Side& side, Index inside, double depth) {
     const double g = block.normal_gravity[inside];
     return std::max(
@@ -35,8 +35,9 @@ void lake_beyond(const WaterBody& body, WaterBlock& block, const Side& side, Ind
     }
 }
 
-/// Water that leaves by a free side has the depth and the speed of the cell before the last one: in steady flow nothing then
-/// changes towards the side. Where both cells differ by more than kEven, as at a bore or on rough ground, by that much.
+/// Water that leaves by a free side has the depth and the speed of the cell before the last one. In steady flow nothing
+/// then changes towards the side. Where both cells differ by more than kEven, as at a bore or on rough ground, by that
+/// much.
 void even_out(WaterBlock& block, const Side& side, Index inside, Index step, Index room) {
     constexpr double kEven = 0.1;
     const auto nearer = [&](double last, double before) {

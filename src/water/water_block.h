@@ -32,8 +32,8 @@ struct WaterFaces {
 
 TilePart part_of(const TileGrid& grid, Index tile);
 
-/// Whether a lake goes on beyond a cell at a side (0 to 3) that is no wall: it stands higher than the ground there, with what
-/// is confined on it.
+/// Whether a lake goes on beyond a cell at a side (0 to 3) that is no wall. It stands higher than the ground there,
+/// with what is confined on it.
 inline bool meets_lake(const WaterBody& body, const WaterBlock& block, Index k, std::size_t side) {
     return body.sides[side] != WaterSide::wall && block.surface[k] - block.depth[k] < body.lakes[side];
 }

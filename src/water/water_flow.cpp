@@ -20,8 +20,8 @@ constexpr Index kLakeReach = 3;
 
 constexpr Index kBeyond = 2;  ///< nodes beyond the grid whose bed is known, for slopes at its sides
 
-/// The bed at nodes and a little beyond, where it goes on as it ends; the lowest elevation in whole metres is
-/// the datum, so that what is taken off costs no digits.
+/// The bed at nodes and a little beyond, where it goes on as it ends. The lowest elevation in whole metres is the
+/// datum, so that what is taken off costs no digits.
 double learn_bed(const WaterScene& scene, const TileGrid& grid, LazyArray<double>& bed) {
     const GridGeometry& g = grid.geometry();
     double lowest = scene.bed(g.x0, g.y0);
@@ -158,7 +158,7 @@ void WaterFlow::place_sources() {
     }
 }
 
-/// Always visits the tiles of the cells around one that water may come to, as far as it gets within a step.
+/// Always visits the tiles of the cells around one that water may come to, within its reach of a step.
 void WaterFlow::expect_water(Index i, Index j, Index reach) {
     const TileGrid& grid = body_.grid;
     const auto clamped = [](Index n, Index count) { return std::clamp<Index>(n, 0, count - 1); };
@@ -245,7 +245,7 @@ void WaterFlow::list_tiles() {
     body_.sums.resize(body_.work.size());
 }
 
-/// What runs at the signal's speed, and falls by half of g at most (g_z times the slope), passes part of a cell.
+/// What runs at the signal's speed, and falls by half of g at most, passes part of a cell. (It falls by g_z times the slope.)
 double WaterFlow::longest_step() const {
     if (body_.work.empty()) return 0.0;
     const double reach = cfl_ * body_.grid.cell();

@@ -1,6 +1,6 @@
 #pragma once
-// Free water on the grid of the columns: the shallow-water equations over bed and confined mass, by a finite
-// volume scheme of second order that keeps lakes at rest and depths positive. One cell around each node.
+// Free water on the grid of the columns: the shallow-water equations over bed and confined mass. The finite volume
+// scheme is of second order, with lakes at rest and positive depths. One cell around each node.
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -22,8 +22,8 @@
 
 namespace frana {
 
-/// What a side of the grid does: stops the water; lets it go, and none comes in (free), or of a lake alone (open:
-/// WaterScene::level); or holds it at a level (WaterScene::side_levels), where it goes both ways.
+/// What a side of the grid does. It stops the water. Or it lets it go, and none comes in (free), or of a lake alone
+/// (open: WaterScene::level). Or it holds it at a level (WaterScene::side_levels), where it goes both ways.
 enum class WaterSide { wall, open, free, level };
 
 /// Water that comes in at cells: a discharge and a speed that are linear between the times of a table. Before and after it
@@ -63,18 +63,19 @@ struct WaterScene {
     std::array<double, 4> side_levels{};  ///< of the water beyond sides that hold one [m]
     std::vector<WaterSource> sources;
     WaterFriction friction;
-    Function friction_at = {};  ///< its coefficient, where that differs in space
+    Function friction_at = {};  ///< its coefficient, where that varies spatially
     WaterViscosity viscosity;
     /// Brakes in place of both where there is one: what flows may be mud, or an avalanche.
     std::optional<BedLaw> bed_law;
-    std::shared_ptr<const bed::LawMap> bed_laws;  ///< those of the nodes, where they differ in space
+    std::shared_ptr<const bed::LawMap> bed_laws;  ///< those of the nodes, where they vary spatially
     double density = 1000.0;                      ///< that the bed law is given [kg/m^3]
     double gravity = constants::kGravity;         ///< [m/s^2]
-    /// Gravity across the ground is g / (1 + |grad b|^2), as for solids (structured/ground.h), so that thin
-    /// water slides down a steep plane as a block does; else g, which are the shallow-water equations as they
-    /// are printed. Both keep lakes at rest: each cell's slope of the surface is multiplied by its own value.
+    /// Gravity across the ground is g / (1 + |grad b|^2), as for solids (structured/ground.h). So thin water slides
+    /// down a steep plane as a block does. Else it is g, and these are the shallow-water equations as they are printed.
+    /// With both, lakes stay at rest: each cell's slope of the surface is multiplied by its own value.
     bool steep = true;
-    /// Of steep ground, smoothed: it turns water that flows over it. None: water keeps its velocity on the map over a bend.
+    /// Of steep ground, smoothed: it turns water that flows over it. None: water's velocity on the map stays the same
+    /// over a bend.
     std::function<BedCurvature(double x, double y)> curvature = {};
     double theta = 2.0;  ///< of the limiter, 1 (minmod) to 2 (MC: of the smaller errors, face_flux.h)
     double cfl = 0.45;   ///< part of a cell that waves may pass in a step, below 1/2 [1]
@@ -89,12 +90,12 @@ struct WaterLedger {
     Flat2 momentum_left{0, 0}, momentum_infiltrated{0, 0};  ///< carried out, less what entered brought
     double released = 0.0;                                  ///< given by columns
     Flat2 columns{0, 0};                                    ///< of what columns released, and their drag
-    Flat2 ground{0, 0};                                     ///< push of bed and confined mass
-    Flat2 walls{0, 0};                                      ///< push of walls, and of the water beyond open sides
+    Flat2 ground{0, 0};                                     ///< force of bed and confined mass
+    Flat2 walls{0, 0};                                      ///< force of walls, and of the water beyond open sides
     Flat2 friction{0, 0};                                   ///< at the bed, and what films lose that stop
-    /// Energy over density [m^5/s^2]: lost at the bed, by films that stop and in speeding up rain; lost to viscosity inside;
-    /// gone with the water through open sides and into the ground, less what rain, sources and entering water brought, heights
-    /// above the datum.
+    /// Energy over density [m^5/s^2]. braked: lost at the bed, by films that stop and in speeding up rain. sheared:
+    /// lost to viscosity inside. energy_out: gone with the water through open sides and into the ground, less what
+    /// rain, sources and entering water brought. Heights are above the datum.
     double braked = 0.0, sheared = 0.0, energy_out = 0.0;
     void add(const WaterLedger& o, double share = 1.0);
 };
@@ -127,7 +128,7 @@ struct WaterFields {
 /// All that the kernels share.
 struct WaterBody {
     explicit WaterBody(const WaterScene& scene);
-    /// The highest of the lakes beyond the sides that the cell is at; far below all ground where there is none [m]
+    /// The highest of the lakes beyond the sides that the cell is at [m]. Far below all ground where there is none
     double highest_lake(Index i, Index j) const {
         double highest = kNoLake;
         const auto at = [&](std::size_t side, bool here) {
@@ -160,7 +161,7 @@ struct WaterBody {
     OnNodes<std::uint32_t> bed_law;  ///< its place in that table
     double density;
     double gravity, theta, film;
-    double datum;  ///< lets water high above the sea keep its digits [m]
+    double datum;  ///< so that water high above the sea loses no digits [m]
     static constexpr double kNoLake = -std::numeric_limits<double>::max();
     std::array<double, 4> lakes;  ///< above it, of those beyond the sides; kNoLake without one [m]
     bool steep;
@@ -199,10 +200,10 @@ public:
         to.bed = body_.bed.data(), to.film = body_.film, to.friction = body_.friction;
         to.coefficients = body_.coefficient.view(), to.viscosity = body_.viscosity;
     }
-    /// Takes up what columns on these tiles (ascending) changed: status and ledger know it from now on.
+    /// Takes up what columns on these tiles (ascending) changed: status and ledger have it from now on.
     void take_changes(const std::vector<Index>& tiles);
-    /// Saves the state between two steps, or takes it up again with all its bits, in a flow of the same scene. Confined
-    /// mass is not part of it.
+    /// Saves the state between two steps, or restores it with all its bits, in a flow of the same scene. Confined mass
+    /// is not part of it.
     void serialize(Archive& archive);
     /// State of the cell around a node; elevation of its surface [m]
     WaterState at(Index i, Index j) const;

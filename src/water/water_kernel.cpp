@@ -1,6 +1,5 @@
-// The loops of a step of free water: each tile is copied with three cells around it, and what goes through
-// its faces is computed there. WaterFaces between two tiles are computed twice, from the same numbers to the
-// same bits.
+// The loops of a step of free water. Each tile is copied with three cells around it, and what goes through its faces is
+// computed there. WaterFaces between two tiles are computed twice, from the same numbers to the same bits.
 #include <algorithm>
 #include <cmath>
 
@@ -27,8 +26,7 @@ void find_slopes(const WaterBlock& block, const double* along, const double* acr
     }
 }
 
-/// A cell's water at its high face (sign 1) or at its low one (-1): linear in the cell, its momentum the
-/// cell's.
+/// A cell's water at its high face (sign 1) or at its low one (-1). It is linear in the cell, its momentum the cell's.
 [[gnu::always_inline]] inline FaceSide<Double4> at_face(const WaterBlock& block, const double* along,
                                                         const double* across, const WaterSlopes& slopes, Index k,
                                                         double sign) {
@@ -39,9 +37,9 @@ void find_slopes(const WaterBlock& block, const double* along, const double* acr
             load(across + k) + other * load(slopes.across + k)};
 }
 
-/// Water that stands on higher ground than the next cell's surface falls into it, whatever limited slopes make of the
-/// ground at the face between them: on rough ground they put a step there that thin water would not pass. It would go on
-/// to speed up behind that.
+/// Water that stands on higher ground than the next cell's surface falls into it. That is so whatever limited slopes
+/// make of the ground at the face between them. On rough ground they put a step there that thin water would not pass.
+/// It would go on to speed up behind that.
 [[gnu::always_inline]] inline void let_fall(const WaterBlock& block, Index before, Index behind, FaceSide<Double4>& low,
                                             FaceSide<Double4>& high) {
     const Double4 surface_low = load(block.surface + before), surface_high = load(block.surface + behind);
@@ -69,8 +67,8 @@ void find_fluxes(const WaterBlock& block, const double* along, const double* acr
     }
 }
 
-/// A face at a side of the grid lets nothing in but of a lake beyond it, and through a wall nothing out. `inside`: the last
-/// cell.
+/// A face at a side of the grid lets nothing in but of a lake beyond it. Through a wall nothing goes out. `inside`: the
+/// last cell.
 void close(const WaterBody& body, const WaterBlock& block, WaterFaces& faces, Index k, Index inside, std::size_t side,
            double outward) {
     const bool leaves = body.sides[side] != WaterSide::wall && outward * faces.mass[k] > 0.0;
@@ -119,8 +117,8 @@ void find_faces(const WaterBody& body, const TilePart& part, Stage& s) {
     }
 }
 
-/// No more leaves a cell than is in it: beyond that its outflow is cut short (Bollermann et al. 2011,
-/// doi:10.4208/cicp.220210.020710a), but for a part that keeps round-off from making it negative.
+/// No more leaves a cell than is in it. Beyond that its outflow is cut short (Bollermann et al. 2011,
+/// doi:10.4208/cicp.220210.020710a). A part stays, so that round-off does not make it negative.
 void find_drains(const TilePart& part, double cells, Stage& s) {
     constexpr double kKept = 1e-9;
     for (Index b = kHalo - 1; b <= part.rows; ++b)
@@ -176,9 +174,9 @@ GradientStress gradient_stress(const WaterBody& body, const Stage& s, const Visc
 }
 
 /// Viscous stress through a face over density: h nu (grad u + grad u^T)
-/// (Pudasaini 2012, averaged over the depth), h the harmonic mean of both cells', which is none beside dry ground.
-/// Whoever stands at a wall slides along it. Returns the energy lost in a time of cell^2, of those faces that belong to
-/// the tile: the low ones of its cells, and at the side of the grid half of what its mirror would have.
+/// (Pudasaini 2012, averaged over the depth). h is the harmonic mean of both cells', which is none next to dry ground.
+/// Water at a wall slides along it. Returns the energy lost in a time of cell^2, of those faces that belong to
+/// the tile. They are the low ones of its cells. At the side of the grid it is half of what its mirror would have.
 double add_viscous(const WaterBody& body, const Stage& s, const ViscousFace& of, Index k, WaterFaces& faces) {
     const Index back = k - of.step, aside = of.step == 1 ? kRow : 1;
     const double low = s.block.depth[back], high = s.block.depth[k];
@@ -230,8 +228,8 @@ Change change_of(const Stage& s, Index k, double cells) {
             pressure_force};
 }
 
-/// Energy over mass of water that leaves: of its surface's height, which is pressure below it, and of motion along the
-/// ground [m^2/s^2].
+/// Energy over mass of water that leaves [m^2/s^2]. It is of its surface's height, which is pressure below it, and of
+/// motion along the ground.
 double head_of(const WaterBody& body, const WaterBlock& block, Index k) {
     const double u = block.u[k], v = block.v[k];
     const auto ground = [&](Index at) { return block.surface[at] - block.depth[at]; };
@@ -241,7 +239,8 @@ double head_of(const WaterBody& body, const WaterBlock& block, Index k) {
     return body.gravity * block.surface[k] + 0.5 * (u * u + v * v + up * up);
 }
 
-/// One side of the grid in a tile's ledger: `k` is the face, `inside` the cell at it. What enters has the energy of the lake beyond.
+/// One side of the grid in a tile's ledger: `k` is the face, `inside` the cell at it. What enters has the energy of the
+/// lake beyond.
 void accumulate_side(const WaterBody& body, const Stage& s, const WaterFaces& faces, const WaterSlopes& slopes, Index k,
                      Index inside, int axis, double outward, double cells, WaterLedger& ledger) {
     const double h = s.block.depth[inside] + 0.5 * outward * slopes.depth[inside];
@@ -284,7 +283,7 @@ double rise_of_path(const BedCurvature& of, const Vec2& v) {
     return v.x() * v.x() * of.xx + 2.0 * v.x() * v.y() * of.xy + v.y() * v.y() * of.yy;
 }
 
-/// What fluxes leave out of the push on water of depth h and velocity v over steep ground, over the density [m^2/s^2]:
+/// The force on water of depth h and velocity v over steep ground that fluxes leave out, over the density [m^2/s^2].
 /// THEORY, section 2. Where water would fly, its weight is none. `slope`: of the surface, as limited.
 Vec2 steep_force(const WaterBody& body, Index k, double h, const Vec2& v, const Vec2& slope) {
     const double weight = std::max(0.0, body.gravity + rise_of_path(body.curvature[k], v));
@@ -343,7 +342,7 @@ Vec2 velocity_before(const WaterBody& body, Index k) {
     return h > body.film ? Vec2(Vec2(body.now.qx[k], body.now.qy[k]) / h) : Vec2(0, 0);
 }
 
-/// What a bed law sees of a cell that flows in a direction at a speed, on the map [m/s].
+/// A bed law's input of a cell that flows in a direction at a speed, on the map [m/s].
 BedState seen_by_law(const WaterBody& body, Index k, double h, const Vec2& direction, double speed) {
     const double cosine = body.steep ? std::sqrt(body.normal_gravity[k] / body.gravity) : 1.0;
     const double along = body.steep ? direction.dot(bed_slope(body, k)) : 0.0, kappa = std::sqrt(1.0 + along * along);
@@ -387,8 +386,8 @@ double along_ground(const WaterBody& body, Index k, const Vec2& a, const Vec2& b
     return a.dot(b) + slope.dot(a) * slope.dot(b);
 }
 
-/// Energy of a depth that joins a cell with velocity v, recorded in cells of unit area: it comes onto the surface, and both
-/// then share their momentum.
+/// Energy of a depth that joins a cell with velocity v, recorded in cells of unit area. The depth comes onto the
+/// surface, and both then share their momentum.
 void join(const WaterBody& body, Index k, double added, const Vec2& v, Water& w, WaterLedger& ledger) {
     const double before = w.h;
     w.h += added;
@@ -399,7 +398,7 @@ void join(const WaterBody& body, Index k, double added, const Vec2& v, Water& w,
     }
 }
 
-/// What sources bring in the step; all of it on top, so that the flux of a step is that of the water that was there.
+/// What sources bring in the step. All of it comes on top. So the flux of a step is that of the water that was there.
 void take_from_sources(const WaterBody& body, Index k, Water& w, WaterLedger& ledger) {
     const double added = body.fed[k];
     if (!(added > 0.0)) return;
@@ -429,9 +428,9 @@ void feed_and_soak(const WaterBody& body, Index k, double dt, Water& w, WaterLed
     }
 }
 
-/// Sources, rain, infiltration and friction at the end of a step, recorded in cells of unit area. Friction's work is its impulse
-/// times the mean of the velocities at the start and at the end: what it holds at rest or at one speed loses no more than
-/// it falls.
+/// Sources, rain, infiltration and friction at the end of a step, recorded in cells of unit area. Friction's work is
+/// its impulse times the mean of the velocities at the start and at the end. What it holds at rest or at one speed
+/// loses no more than it falls.
 void finish_cell(const WaterBody& body, Index k, double dt, Water& w, WaterLedger& ledger) {
     if (body.rain || body.infiltration || body.fed) feed_and_soak(body, k, dt, w, ledger);
     const Vec2 driven(w.qx, w.qy);
@@ -486,8 +485,8 @@ void for_each_listed_tile(const WaterBody& body, Body&& each) {
 
 }  // namespace
 
-/// The second stage's fluxes are those of water that friction has slowed: on a slope it would otherwise run
-/// by half of what gravity gives it in a step too far.
+/// The second stage's fluxes are those of water that friction has slowed. On a slope it would otherwise run too far, by
+/// half of what gravity gives it in a step.
 void first_stage(WaterBody& body, double dt) {
     const bool brakes = brakes_of(body);
     for_each_listed_tile(body, [&](std::size_t n, Index tile) {

@@ -1,5 +1,5 @@
-// The state of free water between two steps, as it is kept and taken up again: the tiles of the next step with what is
-// in them, and the sums of the run.
+// The state of free water between two steps, as it is serialized. It is the tiles of the next step with what is in
+// them, and the sums of the run.
 #include <algorithm>
 
 #include "base/error.h"

@@ -33,7 +33,7 @@ public:
         description->AddInput("particles");
         if (processor_->RequestDataDescription(description) == 0) {
             if (failed_) throw trouble("failed before and is not called any more");
-            return;  // it wants nothing now
+            return;  // it needs nothing now
         }
         const auto grid = image_of(frame);
         grid->GetPointData()->SetActiveScalars("depth");
@@ -65,7 +65,7 @@ private:
     bool started_ = false, failed_ = false;
 };
 
-/// Whether a script makes views: a look at its words, which is all that can be had without running it.
+/// Whether a script makes views. Its words tell, which is all that can be had without running it.
 bool draws(const std::filesystem::path& script) {
     std::ifstream stream(script);
     for (std::string line; std::getline(stream, line);)

@@ -54,7 +54,7 @@ vtkSmartPointer<vtkActor> balls_actor(const std::vector<Objects3d::Ball>& balls,
     mapper->SetScaleArray("radius");
     auto actor = vtkSmartPointer<vtkActor>::New();
     actor->SetMapper(mapper);
-    actor->GetProperty()->SetAmbient(0.45);  // colours stay those of the bar but for the rims
+    actor->GetProperty()->SetAmbient(0.45);  // colours stay those of the bar but for the edges
     actor->GetProperty()->SetDiffuse(0.6);
     actor->GetProperty()->SetSpecular(0.0);
     return actor;

@@ -1,6 +1,5 @@
 #pragma once
-// What stands on a perspective view's ground, as VTK draws it; includes VTK, so only for .cpp files of this
-// room.
+// What stands on a perspective view's ground, as VTK draws it. Includes VTK, so only for .cpp files of this room.
 #include <vtkSmartPointer.h>
 
 #include <vector>

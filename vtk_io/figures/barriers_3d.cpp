@@ -10,7 +10,7 @@
 namespace frana {
 namespace {
 
-/// Length of a side that ends at `next`, or nothing when it does not: within its last patch, on its line.
+/// Length of a side that ends at `next`, within its last patch, on its line. Nothing when it does not.
 std::optional<double> length_to(const LoadedFace& side, const Vec3& next) {
     const Vec3 way = next - side.corner();
     const double along = side.right().dot(way), all = side.longest(), slack = 1e-3 * side.size();

@@ -29,11 +29,10 @@ struct BarrierSolid {
     bool within(const Vec2& p) const;
 };
 
-/// The solids of all barriers in `patches`, which has the faces of each in their order, the sides round the
-/// outline before the top (observe/frame.h); a barrier of any shape, whose faces are those of a box, has no
-/// solid without its mesh. A barrier without an entry in `tops` is as high as its sides. A node pushes over three
-/// cells, but is recorded with one patch: each piece has the mean of up to 3 x 3 patches, without those of a side
-/// that are below the ground.
+/// The solids of all barriers in `patches`. That has the faces of each in their order, the sides round the outline
+/// before the top (observe/frame.h). A barrier of any shape, whose faces are those of a box, has no solid without its
+/// mesh. A barrier without an entry in `tops` is as high as its sides. A node's force acts over three cells, but is
+/// recorded with one patch. So each piece has the mean of up to 3 x 3 patches. Those of a side below the ground are left out.
 std::vector<BarrierSolid> barrier_solids(const std::vector<LoadedPatch>& patches, const std::vector<BarrierTop>& tops,
                                          const Raster& bed, const BarrierMeshes& meshes = {});
 

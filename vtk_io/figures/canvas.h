@@ -1,6 +1,6 @@
 #pragma once
-// A sheet in pixels, origin at the lower left, on which figures are drawn: images, filled shapes and strokes
-// in the order of the calls, all texts on top.
+// A sheet in pixels, origin at the lower left, on which figures are drawn. They are images, filled shapes and strokes
+// in the order of the calls, and all texts on top.
 #include <string>
 #include <variant>
 #include <vector>
@@ -49,7 +49,7 @@ std::vector<std::string> wrapped(const std::string& text, const TextStyle& style
 /// The parts of a polyline inside a rectangle.
 std::vector<std::vector<Vec2>> clipped(const std::vector<Vec2>& line, const Rectangle& window);
 
-/// Keeps what is drawn until it is painted. Painting is cairo's, without a renderer; canvases of several threads paint at
+/// Stores what is drawn until it is painted. Painting is cairo's, without a renderer; canvases of several threads paint at
 /// the same time.
 class Canvas {
 public:
@@ -59,8 +59,7 @@ public:
     void fill(const std::vector<Vec2>& convex, const Colour& colour);
     /// Fills the pixels whose centres it holds.
     void fill(const Rectangle& rectangle, const Colour& colour);
-    /// A single horizontal or vertical piece is moved by at most half a pixel to fill whole pixels; so is
-    /// `frame`.
+    /// A single horizontal or vertical piece is moved by at most half a pixel to fill whole pixels. So is `frame`.
     void stroke(const std::vector<Vec2>& line, const Pen& pen);
     void frame(const Rectangle& rectangle, const Pen& pen);
     void text(const std::string& text, const Vec2& at, const TextStyle& style);

@@ -22,7 +22,7 @@ std::string font_file(bool bold) {
     return "";
 }
 
-/// Regular and bold, opened once and kept as long as the process: fonts made of them may live as long.
+/// Regular and bold, opened once and held as long as the process: fonts made of them may live as long.
 struct Faces {
     std::array<cairo_font_face_t*, 2> faces{};
     bool own = true;

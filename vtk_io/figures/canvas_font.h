@@ -15,8 +15,8 @@ struct TextBox {
     double bearing = 0.0;  ///< from where it is started to its first ink
 };
 
-/// DejaVu Sans, which has all the signs of units and comes with nearly every desktop; elsewhere what the system has for
-/// "sans-serif". Not turned: the surface is.
+/// DejaVu Sans, which has all the signs of units and comes with nearly every desktop. Elsewhere it is what the system
+/// has for "sans-serif". Not turned: the surface is.
 class CanvasFont {
 public:
     explicit CanvasFont(const TextStyle& style);

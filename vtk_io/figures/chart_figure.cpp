@@ -111,7 +111,7 @@ void draw_mark(Canvas& canvas, const Vec2& at, double unit, const Colour& colour
     canvas.fill(disc, colour);
 }
 
-/// The look of the i-th line.
+/// The style of the i-th line.
 Pen curve_pen(std::size_t i, double unit) {
     Pen pen;
     pen.colour = curve_colour(i);

@@ -41,9 +41,8 @@ struct ChartFigure {
 };
 
 /// Draws the panels one above the other into a PNG of width x height. Curves differ by colour (safe for the
-/// colour-blind) and by dashes (readable in grey), the same in all panels; each panel has its legend above.
-/// False with a reason when pictures are switched off (no file is made); UserError when the file cannot be
-/// written.
+/// colour-blind) and by dashes (readable in grey), the same in all panels. Each panel has its legend above. False with
+/// a reason when pictures are switched off (no file is made); UserError when the file cannot be written.
 bool render_chart(const ChartFigure& figure, const std::filesystem::path& png, std::string& why_not);
 
 }  // namespace frana

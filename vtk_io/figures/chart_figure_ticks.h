@@ -10,8 +10,7 @@ namespace frana {
 double round_down_125(double value);
 /// The smallest of the same series that is >= value (> 0).
 double round_up_125(double value);
-/// A little above value (> 0), with one or two digits: 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of
-/// ten.
+/// A little above value (> 0), with one or two digits. It is 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten.
 double round_limit(double value);
 
 struct Ticks {

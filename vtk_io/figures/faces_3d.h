@@ -23,7 +23,7 @@ struct LoadedFace {
 /// The faces of one barrier in their order.
 std::vector<LoadedFace> faces_of(const std::vector<LoadedPatch>& patches, int barrier);
 
-/// Mean pressures over each patch and its neighbours on the face [Pa]; `counts` says which of them can be pushed.
+/// Mean pressures over each patch and its neighbours on the face [Pa]; `counts` says which of them can be loaded.
 std::vector<double> smoothed(const LoadedFace& face, const std::function<bool(const LoadedPatch&)>& counts);
 
 /// The part of a ring within a square (Sutherland and Hodgman 1974).

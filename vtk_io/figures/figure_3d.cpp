@@ -84,7 +84,7 @@ double light_on(const Vec3& normal, double azimuth) {
     return 0.86 + 0.14 * normal.z() + 0.1 * lamp.dot(normal.head<2>());
 }
 
-/// The sides that the load pushes, seen along it.
+/// The sides that the load acts on, seen along it.
 Objects3d::Inset struck_face(const BarrierSolid& barrier, const Colours3d& colours) {
     Objects3d::Inset inset;
     const Vec2 ahead = barrier.load.head<2>().normalized(), right(ahead.y(), -ahead.x());

@@ -75,12 +75,12 @@ std::vector<std::string> command(const std::string& extension, double pictures_p
                                       "error",        "-y",
                                       "-framerate",   fmt::format("{:.6g}", pictures_per_second),
                                       "-i",           "frame_%06d.png"};
-    if (extension == ".gif")  // a palette of its own keeps the colours of the map
+    if (extension == ".gif")  // a palette of its own preserves the colours of the map
         for (const char* word : {"-filter_complex",
                                  "scale=w='min(iw,800)':h=-1:flags=lanczos,split[a][b];[a]palettegen[p];"
                                  "[b][p]paletteuse=dither=none"})
             words.push_back(word);
-    else  // players want an even size, this pixel format, and stumble over very few pictures a second
+    else  // players need an even size, this pixel format, and stumble over very few pictures a second
         for (const char* word : {"-vf", "fps=25,pad=w=ceil(iw/2)*2:h=ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p",
                                  "-movflags", "+faststart"})
             words.push_back(word);

@@ -10,7 +10,7 @@ namespace frana {
 /// Why no film can be made here: no program ffmpeg in PATH. Empty when one can.
 std::string no_film_reason();
 
-/// Pictures of equal size on their way into a film. They lie in a folder beside it that goes with the reel.
+/// Pictures of equal size on their way into a film. They lie in a folder next to it that goes with the reel.
 class FilmReel {
 public:
     /// `film` ends in .mp4 or .gif, which says what it becomes. UserError when the folder cannot be made.

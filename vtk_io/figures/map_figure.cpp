@@ -180,7 +180,7 @@ private:
         return {low.x(), low.y(), high.x(), high.y()};
     }
 
-    /// A name beside a point: to its right, or where that is taken, as near as there is room.
+    /// A name next to a point: to its right, or where that is taken, as near as there is room.
     void name(const std::string& text, const Vec2& at) {
         const double u = layout_.unit;
         const Rectangle& f = layout_.frame;
@@ -251,7 +251,7 @@ private:
     Canvas canvas_;
     Raster field_;                         ///< at the pixels of the frame
     std::vector<Rectangle> labels_;        ///< of contours
-    static constexpr double kSmall = 3.0;  ///< a barrier that names keep off [units]: a name would hide it
+    static constexpr double kSmall = 3.0;  ///< a barrier that names stay off [units]: a name would hide it
     std::vector<Rectangle> names_;         ///< of barriers, profiles and gauges
     std::vector<Rectangle> houses_;        ///< small barriers
 };

@@ -35,7 +35,7 @@ vtkSmartPointer<vtkTexture> as_texture(const Pixels& picture) {
     return texture;
 }
 
-/// Linear between the nodes; NaN outside or beside a NaN node.
+/// Linear between the nodes; NaN outside or next to a NaN node.
 double height_at(const Raster& surface, const Vec2& p) {
     const GridGeometry& g = surface.geometry;
     const double u = (p.x() - g.x0) / g.cell, v = (p.y() - g.y0) / g.cell;

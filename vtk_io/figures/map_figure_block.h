@@ -15,8 +15,8 @@ namespace frana {
 /// Cells in their own colours, whatever the light.
 vtkSmartPointer<vtkActor> unlit_actor(vtkPolyData* data);
 
-/// The surface through the raster's nodes (cells with a NaN corner left open) with a picture stretched over
-/// it from the first to the last node. Coordinates are relative to `origin`.
+/// The surface through the raster's nodes (cells with a NaN corner left open). A picture is stretched over it from the
+/// first to the last node. Coordinates are relative to `origin`.
 vtkSmartPointer<vtkActor> skin_actor(const Raster& surface, const Pixels& picture, const Vec2& origin);
 
 /// Walls from the raster's outer nodes down to the level `foot` [m].

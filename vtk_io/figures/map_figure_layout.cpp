@@ -100,7 +100,7 @@ std::array<double, 4> wanted_view(const MapFigure& figure) {
     return view;
 }
 
-/// The view brought to the shape of the room for it, as far as there is terrain, and never a mere sliver.
+/// The view brought to the shape of the room for it, as far as there is terrain. It is never a mere sliver.
 std::array<double, 4> shaped(std::array<double, 4> view, const std::array<double, 4>& all, double shape) {
     const double w = view[2] - view[0], h = view[3] - view[1];
     if (w < shape * h)

@@ -8,8 +8,8 @@ namespace frana {
 /// For each node of the grid, row 0 = south: 1 inside an odd number of the rings, else 0.
 std::vector<char> nodes_inside(const std::vector<Polyline>& rings, const GridGeometry& grid);
 
-/// One pixel per node of the bed: relief in grey, and laid over it the colour of what is in both extents, in the
-/// simulated one only, in the surveyed one only (colours::hit, beyond, missed).
+/// One pixel per node of the bed, with relief in grey. Laid over it are colours of both extents, of the simulated one
+/// only, of the surveyed one only (colours::hit, beyond, missed).
 Pixels painted_overlay(const Raster& bed, const std::vector<Polyline>& simulated,
                        const std::vector<Polyline>& surveyed);
 

@@ -14,10 +14,11 @@ struct FieldStyle {
 };
 
 /// One pixel per node. With r the relief's grey, the colour c of a value becomes 0.88 c (0.62 + 0.45 r) +
-/// 0.12 r: relief shows through, and the colour stays that of the colour bar within a few per cent.
+/// 0.12 r. Relief shows through, and the colour stays that of the colour bar within a few per cent.
 Pixels painted(const Raster& bed, const Raster& field, const FieldStyle& style);
 
-/// One pixel per node of the bed, in the colour of the class that the nearest node of `numbers` has (MapFigure::classes).
+/// One pixel per node of the bed. Its colour is that of the class of the nearest node of `numbers`
+/// (MapFigure::classes).
 Pixels painted_classes(const Raster& bed, const Raster& numbers, const std::vector<MapClass>& classes);
 
 /// Colour of something opaque on ground of the given grey (`painted` has the formula).

@@ -198,7 +198,7 @@ void BlockDrawing::keep_projection(vtkCamera* camera) {
     to_unit_square_ = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(m);
 }
 
-/// The camera where the figure wants it.
+/// The camera at the figure's eye.
 void BlockDrawing::aim_from_eye(vtkRenderer* renderer) {
     const auto relative = [&](const std::array<double, 3>& p) {
         return Vec3(p[0] - origin_.x(), p[1] - origin_.y(), p[2]);

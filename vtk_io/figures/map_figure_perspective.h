@@ -23,8 +23,8 @@ struct PerspectiveFigure {
     std::optional<double> look_azimuth_deg;      ///< direction of view, clockwise from north; default: up the
                                                  ///< slope under the material, turned by 25 degrees
     double look_down_deg = 32.0;                 ///< angle of view below the horizon
-    /// A camera at a place of its own, in map coordinates and elevation [m], instead of one that moves back until the
-    /// block fills the picture; the block is then all of the terrain unless `focus` says otherwise.
+    /// A camera at a place of its own, in map coordinates and elevation [m]. Otherwise the camera moves back until the
+    /// block fills the picture. The block is then all of the terrain unless `focus` says otherwise.
     struct Eye {
         std::array<double, 3> position{}, target{};
         double view_angle_deg = 30.0;  ///< upright

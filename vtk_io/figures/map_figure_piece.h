@@ -8,8 +8,8 @@ namespace frana {
 
 using MapBox = std::array<double, 4>;  ///< xmin, ymin, xmax, ymax [m]
 
-/// The block to show: the material and the survey with a broad margin, at least 40 % of the terrain; all of it when
-/// the figure has an eye of its own and no focus.
+/// The block to show: the material and the survey with a broad margin, at least 40 % of the terrain. All of it when the
+/// figure has an eye of its own and no focus.
 MapBox block_of(const PerspectiveFigure& figure);
 
 /// Nodes over the block, `along` of them on its longer side.

@@ -10,8 +10,8 @@
 
 namespace frana {
 
-/// Limits of the colours: given, or zero (the smallest value, when negative) to a round number at or above
-/// the 99.5th percentile of the values shown; symmetric about zero for the diverging map.
+/// Limits of the colours. They are given, or go from zero (the smallest value, when negative) to a round number. That
+/// is at or above the 99.5th percentile of the values shown. Symmetric about zero for the diverging map.
 struct ColourRange {
     double low = 0.0, high = 1.0;
     bool more_below = false, more_above = false;
@@ -34,7 +34,7 @@ std::array<double, 4> extent_of(const Polygons& polygons);
 /// The field where |outlined| exceeds the limit, elsewhere NaN; every number of it is then shown.
 std::vector<double> inside_outline(std::vector<double> field, const std::vector<double>& outlined, double shown_above);
 constexpr double kAll = -1.0;  ///< "shown above" that hides NaN only
-/// The limits of the colours of a field that is shown where `outlined` exceeds the limit; empty: where the field does.
+/// The limits of the colours of a field that is shown where `outlined` exceeds the limit. Empty: where the field does.
 ColourRange colours_within(const std::vector<double>& field, const std::vector<double>& outlined, double shown_above,
                            Colormap map, const std::optional<std::pair<double, double>>& given,
                            Top top = Top::percentile);

@@ -106,7 +106,7 @@ private:
         return kept;
     }
 
-    /// The side that a normal is turned to most, then those nearly as much, which a push may have gone to as well.
+    /// The side that a normal is turned to most. Then come those nearly as much, which may have got the force as well.
     std::vector<std::size_t> sides_of(const Vec3& normal) const {
         constexpr double kAsMuch = 0.02;  // 0.8 degrees off the middle: more would count twice on round meshes
         std::size_t most = 0;
@@ -148,7 +148,7 @@ private:
 
     void add_piece(std::vector<Vec3> corners, const Vec3& normal, Behind& behind, bool keeps) {
         const double size = corners.size() < 3 ? 0.0 : area_of(corners).norm();
-        const double least = 1e-9 * sides_.front().size * sides_.front().size;  // else only touched by the square
+        const double least = 1e-9 * sides_.front().size * sides_.front().size;  // else the square only meets its edge
         if (size <= least) return;
         behind.area += size * normal;
         behind.place += size * middle_of(corners);
@@ -156,7 +156,7 @@ private:
         if (!keeps) return;
         const auto highest = std::max_element(corners.begin(), corners.end(),
                                               [](const Vec3& a, const Vec3& b) { return a.z() < b.z(); });
-        std::rotate(corners.begin(), highest + 1, corners.end());  // best_view() looks whether the last is seen
+        std::rotate(corners.begin(), highest + 1, corners.end());  // best_view() checks whether the last is seen
         solid_.pieces.push_back({std::move(corners), normal, 0.0});
     }
 
@@ -172,7 +172,7 @@ private:
         }
     }
 
-    /// A patch knows how hard it is pushed across its face; the push stands on what lies behind it.
+    /// A patch has the pressure across its face. The force is on what lies behind it.
     void sum_load() {
         double weight = 0.0, highest = -1e300;
         Vec3 place(0, 0, 0), middle(0, 0, 0);

@@ -1,5 +1,6 @@
 #pragma once
-// Barriers of any shape as solids to be drawn: their mesh, with the pressure on the sides of the box around it.
+// Barriers of any shape as solids to be drawn. They have their mesh, with the pressure on the sides of the box around
+// it.
 #include <array>
 #include <memory>
 #include <vector>
@@ -10,9 +11,9 @@
 namespace frana {
 
 /// The mesh in pieces of a patch, without those under the ground. The six faces are the sides of a box, towards -x, +x,
-/// -y, +y, -z and +z (terrain/distance_field.h): a piece has the pressure of the face that it is turned to, and one
-/// between two faces the sum of both, for either may have been recorded with a push. Two walls of a mesh that are
-/// turned to the same face one behind the other have one pressure.
+/// -y, +y, -z and +z (terrain/distance_field.h). A piece has the pressure of the face that it is turned to. One between
+/// two faces has the sum of both, for the force may have been recorded with either. Two walls of a mesh that are turned
+/// to the same face one behind the other have one pressure.
 BarrierSolid mesh_solid(const std::vector<LoadedFace>& faces, std::shared_ptr<const TriangleMesh> mesh,
                         const Raster& bed);
 
@@ -23,7 +24,7 @@ std::vector<std::vector<Vec3>> sharp_edges(const TriangleMesh& mesh, double long
 struct MeshCut {
     std::vector<std::vector<Vec2>> areas;     ///< convex, together all that is inside
     std::vector<std::vector<Vec2>> outlines;  ///< the last corner is the first
-    /// Part of the outline that is pushed.
+    /// Part of the outline that is loaded.
     struct Strip {
         Vec2 from, to, inward;  ///< the last of unit length
         double pressure;        ///< [Pa]

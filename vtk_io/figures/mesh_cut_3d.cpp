@@ -55,7 +55,7 @@ std::vector<std::vector<Vec2>> flat(const std::vector<std::vector<Vec3>>& cells)
     return shapes;
 }
 
-/// The parts of the cut that are pushed: where its pieces cross the plane.
+/// The parts of the cut that are loaded: where its pieces cross the plane.
 std::vector<MeshCut::Strip> strips_of(const BarrierSolid& barrier, const Move& in_plane) {
     std::vector<MeshCut::Strip> strips;
     for (const BarrierSolid::Piece& piece : barrier.pieces) {

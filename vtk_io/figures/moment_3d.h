@@ -41,10 +41,10 @@ struct View3d {
     Vec2 through{0, 0};           ///< a place in the middle of what happens [m]
 };
 
-/// Collects moments. What they have in common: all points but the outermost per cent of each direction and
-/// the barriers, no further from the most loaded barrier than three times its length; the 99.5th percentile
-/// of the speeds and the largest pressure, rounded up. The flow goes where it pushes the most loaded barrier,
-/// or else where the points' momentum goes when it is largest.
+/// Collects moments. What they have in common: all points but the outermost per cent of each direction, and the
+/// barriers. None is further from the most loaded barrier than three times its length. Also the 99.5th percentile of
+/// the speeds and the largest pressure, rounded up. The flow's direction is that of its force on the most loaded
+/// barrier. Without one it is that of the points' momentum when it is largest.
 class Shared3d {
 public:
     void add(const Moment3d& moment);
@@ -58,8 +58,8 @@ private:
     Vec2 force_{0, 0}, at_load_{0, 0}, motion_{1, 0}, middle_{0, 0};
 };
 
-/// The same with its box drawn in around the most loaded barrier of the moment, three times that barrier's height about it:
-/// the wall is what has to be seen. Without a load nothing changes.
+/// The same with its box drawn in around the most loaded barrier of the moment. It extends three times that barrier's
+/// height about it. The wall is what has to be seen. Without a load nothing changes.
 View3d close_view(View3d shared, const Moment3d& moment);
 
 }  // namespace frana

@@ -7,7 +7,7 @@
 
 namespace frana {
 
-/// A colour bar beside the picture.
+/// A colour bar next to the picture.
 struct ColourBar {
     Colormap colormap = Colormap::depth;
     ColourRange range;
@@ -42,7 +42,8 @@ struct Objects3d {
     bool empty() const { return balls.empty() && facets.empty(); }
 };
 
-/// What an inset takes of a picture's height, its caption with it, if it is to be no larger than `most`; 0 without any [px].
+/// The height that an inset takes of a picture, with its caption, if it is no larger than `most` [px]. 0 without
+/// any.
 double height_of_inset(const Objects3d::Inset& inset, const Vec2& most, double unit);
 
 /// Draws an inset with its upper left corner there, no larger than `most` [px].

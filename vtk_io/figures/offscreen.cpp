@@ -23,10 +23,10 @@
 
 #include "vtk_io/figures/canvas.h"
 
-// VTK before 9.4 loads OpenGL through GLEW, and Debian builds GLEW for GLX: glewInit() finds all entry
-// points, then answers 4, "no GLX display". The entry points serve EGL as well, so this definition, which the
-// dynamic linker finds before GLEW's, turns that one answer into success. It must be in the module that is opened for
-// pictures, ahead of the libraries that it needs, or in an executable that exports it.
+// VTK before 9.4 loads OpenGL through GLEW, and Debian builds GLEW for GLX. glewInit() finds all entry points, then
+// answers 4, "no GLX display". The entry points serve EGL as well. The dynamic linker finds this definition before
+// GLEW's, and it turns that one answer into success. It must be in the module that is opened for pictures, ahead of the
+// libraries that it needs. Or it is in an executable that exports it.
 extern "C" __attribute__((visibility("default"))) unsigned int glewInit() {  // NOLINT(readability-identifier-naming)
     using Init = unsigned int (*)();
     constexpr unsigned int no_glx_display = 4;
@@ -49,8 +49,8 @@ public:
     const std::string& problem() const { return problem_; }
     std::mutex& mutex() { return mutex_; }
     bool make_current() { return eglMakeCurrent(display_, surface_, surface_, context_) == EGL_TRUE; }
-    /// What VTK's own windows set on start and its generic window expects to find: nearer or EQUAL depth
-    /// wins, so that what is drawn later lies on top, and colours blend by alpha.
+    /// VTK's own windows set this on start, and its generic window expects to find it. Nearer or EQUAL depth wins, so
+    /// that what is drawn later lies on top, and colours blend by alpha.
     void set_defaults() {
         constexpr unsigned int lequal = 0x0203, depth_test = 0x0B71, blend = 0x0BE2;
         constexpr unsigned int source_alpha = 0x0302, one_minus_source_alpha = 0x0303, one = 1;

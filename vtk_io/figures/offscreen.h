@@ -1,6 +1,6 @@
 #pragma once
-// Pictures in space without a screen: a surfaceless EGL context under a VTK window. Never tries X, since VTK ends the
-// process when it finds no display; where no renderer can be had, a reason is returned instead.
+// 3D pictures without a screen: a surfaceless EGL context under a VTK window. Never tries X, since VTK ends the process
+// when it finds no display. Where no renderer can be had, a reason is returned instead.
 #include <memory>
 #include <string>
 
@@ -10,12 +10,12 @@ class vtkRenderer;
 
 namespace frana {
 
-/// Why no picture in space can be drawn in this process; empty when one can. FRANA_NO_RENDER=1 in the environment
-/// switches all drawing off. The first call makes the one EGL context of the process (about 50 ms).
+/// Why no 3D picture can be drawn in this process; empty when one can. FRANA_NO_RENDER=1 in the environment switches
+/// all drawing off. The first call makes the one EGL context of the process (about 50 ms).
 std::string no_renderer_reason();
 
-/// A window of the given size [px] with a white background, kept in memory. One at a time: a second `open`
-/// in another thread waits until the first window is gone. VTK's own error messages go to `why_not`.
+/// A window of the given size [px] with a white background, in memory. One at a time: a second `open` in another thread
+/// waits until the first window is gone. VTK's own error messages go to `why_not`.
 class Offscreen {
 public:
     /// nullptr when there is no renderer; then `why_not` has the reason.

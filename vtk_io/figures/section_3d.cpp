@@ -1,4 +1,4 @@
-// The vertical section of a moment in space.
+// The vertical section of a moment in 3D.
 #include <algorithm>
 #include <cmath>
 

@@ -9,7 +9,7 @@
 
 namespace frana {
 
-/// One colour range and one view for maps of the same terrain: those that hold all the maps that were added.
+/// One colour range and one view for maps of the same terrain. They hold all the maps that were added.
 class SharedView {
 public:
     void add(const MapFigure& map);
@@ -22,7 +22,7 @@ private:
     std::vector<float> shown_;  ///< some of the values of all maps
     double most_ = 0.0;
     Top top_ = Top::percentile;
-    mutable std::optional<ColourRange> range_;  ///< once it was asked for
+    mutable std::optional<ColourRange> range_;  ///< after its first use
     Colormap colormap_ = Colormap::depth;
     bool any_ = false;
     std::optional<std::array<double, 4>> covered_;  ///< [m]; nothing where no map shows anything

@@ -1,6 +1,7 @@
 #pragma once
-// What the program calls of vtk_io and vtk_io/figures. The libraries of VTK take as long to load as a small run, so all
-// that uses them is a module, which is opened at the first call (on_demand.cpp). Tests link the same functions directly.
+// What the program calls of vtk_io and vtk_io/figures. The libraries of VTK take as long to load as a small run. So all
+// that uses them is a module, which is opened at the first call (on_demand.cpp). Tests link the same functions
+// directly.
 #include "vtk_io/barrier_mesh.h"
 #include "vtk_io/catalyst.h"
 #include "vtk_io/figures/barriers_3d.h"
@@ -76,5 +77,5 @@ struct VtkFunctions {
 
 }  // namespace frana
 
-/// The one symbol that the program looks for in the module.
+/// The one symbol of the module that the program loads.
 extern "C" const frana::VtkFunctions* frana_vtk_functions();

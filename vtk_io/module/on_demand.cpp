@@ -1,4 +1,4 @@
-// The functions of vtk_io as the program has them: each opens the module, if no other did, and calls the one there.
+// The functions of vtk_io as the program has them. Each opens the module, if no other did, and calls the one there.
 #include <dlfcn.h>
 #include <fmt/core.h>
 
@@ -20,8 +20,8 @@ bool tells_of_memory(const std::string& why) {
     return false;
 }
 
-/// Looked for where the program's run path points. It stays open, and global, for Python's own modules look up names in
-/// it when a Catalyst script imports them.
+/// It is found where the program's run path points. It stays open, and global: Python's own modules resolve names in it
+/// when a Catalyst script imports them.
 const VtkFunctions& open_module() {
     const char* const way_out =
         "expected the part of frana that draws pictures and knows VTK's files, of the same build; install it with the "

@@ -65,7 +65,7 @@ std::vector<Index> touched_nodes(Index count, const TileGrid& grid) {
     std::vector<Index> first(static_cast<std::size_t>(count));
     for (Index p = 0; p < count; ++p) {
         const Index tile = p / kPerTile, in_tile = p % kPerTile;
-        // A particle's neighbour in memory is seldom its neighbour in the tile once material has moved: 37 is odd, so
+        // A particle's neighbour in memory is seldom its neighbour in the tile once material has moved. 37 is odd, so
         // that every cell is met.
         const Index cell = (in_tile * 37) % (kTile * kTile);
         first[p] = grid.at(tile % across * kTile + cell % kTile, tile / across * kTile + cell / kTile);

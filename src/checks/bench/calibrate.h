@@ -22,8 +22,9 @@ struct CalibrationPlan {
     int rounds = 20;           ///< the least time of these counts
 };
 
-/// STREAM triad a = b + s c (McCalpin 1995; 24 bytes an element) and node-touch: particles sorted by tile, four a
-/// cell, each adds to nine nodes of four doubles and reads nine of another array; no shape functions, no physics.
+/// STREAM triad a = b + s c (McCalpin 1995; 24 bytes an element), and node-touch. In node-touch particles are sorted by
+/// tile, four a cell. Each adds to nine nodes of four doubles and reads nine of another array; no shape functions, no
+/// physics.
 Calibration calibrate(const CalibrationPlan& plan);
 
 }  // namespace frana::bench

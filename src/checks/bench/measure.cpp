@@ -17,7 +17,7 @@ using Phases = std::vector<PhaseTime>;
 /// What was spent between two readings of the solver's clock.
 Phases between(const Phases& before, const Phases& after) {
     Phases spent = after;
-    for (std::size_t n = 0; n < before.size(); ++n) {  // phases keep their places
+    for (std::size_t n = 0; n < before.size(); ++n) {  // phases stay in their places
         spent[n].seconds -= before[n].seconds;
         spent[n].cpu_seconds -= before[n].cpu_seconds;
         spent[n].calls -= before[n].calls;
@@ -25,7 +25,7 @@ Phases between(const Phases& before, const Phases& after) {
     return spent;
 }
 
-/// The plane's solver, as a meter sees it.
+/// The plane's solver, for the measurement.
 class Plane {
 public:
     explicit Plane(const Scene& scene) : simulation_(scene) { simulation_.count_cpu_time(); }
@@ -37,7 +37,7 @@ public:
     Traffic traffic(const std::string& phase) const { return traffic_of(phase, simulation_.flow()); }
     Index bytes() const { return simulation_.particle_bytes(); }
     std::uint64_t hash() const { return hash_of(simulation_.flow().columns); }
-    /// Nodes that points touch: those that the passes walk while nothing sleeps.
+    /// Nodes that points reach: those that the passes visit while nothing sleeps.
     double nodes() const {
         const Flow& flow = simulation_.flow();
         Index groups = 0;
@@ -70,7 +70,7 @@ private:
     Mpm3d flow_;
 };
 
-/// The solver of structured columns, alone or beside free water.
+/// The solver of structured columns, alone or with free water.
 class Structured {
 public:
     explicit Structured(const Scene& scene) {
@@ -168,7 +168,7 @@ public:
     }
 
 private:
-    /// Advances, and the particle-steps that they were: one may be many steps, of columns beside water.
+    /// Advances, and returns the particle-steps that they were. One may be many steps, of columns with water.
     double advance(int times) {
         double done = 0.0;
         for (int n = 0; n < times; ++n) {

@@ -44,13 +44,13 @@ struct Cost {
 
 /// Runs the scene and times it. From then on OpenMP uses plan.threads threads.
 Cost measure(const Scene& scene, const Plan& plan);
-/// The scenes in turns, a window each: what else the machine does meets all alike, and the fastest windows can be held
-/// against one another. With a structure a scene's steps are those of its columns.
+/// The scenes in turns, a window each. Other work of the machine meets all alike, and the fastest windows can be
+/// compared with one another. With a structure a scene's steps are those of its columns.
 std::vector<Cost> measure_in_turns(const std::vector<Scene>& scenes, const Plan& plan);
 /// The same for 3D points. They are sorted when they have moved far enough, which few windows see.
 Cost measure(const SolidScene& scene, const Plan& plan);
 
-/// Of every bit of every column, in storage order (FNV-1a, Fowler, Noll and Vo 1991, on 8 bytes at a time).
+/// Of every bit of every column, in storage order. It is FNV-1a (Fowler, Noll and Vo 1991), on 8 bytes at a time.
 std::uint64_t hash_of(const Columns& columns);
 std::uint64_t hash_of(const MaterialPoints& points);
 std::uint64_t hash_of(const StructuredPoints& points);

@@ -28,8 +28,9 @@ struct FrameCost {
     double steps = 0.0;  ///< the same in steps of the same run, one thread
 };
 
-/// Makes and writes frames of the reference blob after some steps, with one thread, in a new folder beneath `folder` that
-/// is removed again. Particles have twelve fields (position, velocity, depth, stresses, ...), nodes those of a run.
+/// Makes and writes frames of the reference blob after some steps, with one thread. They go to a new folder in `folder`
+/// that is removed again. Particles have twelve fields (position, velocity, depth, stresses, ...), nodes those of a
+/// run.
 std::vector<FrameCost> time_frames(Index particles, const std::vector<FrameWriter>& writers,
                                    const std::filesystem::path& folder);
 

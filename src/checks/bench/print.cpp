@@ -102,7 +102,7 @@ std::string hash_lines(const Report& report) {
     return fmt::format("{}{}\n", text, verdict);
 }
 
-/// Work of other programs shows as wall time beyond CPU time; with one thread there is nothing else to wait for.
+/// Work of other programs shows as wall time beyond CPU time. With one thread there is nothing else to wait for.
 std::string warning(const Report& report) {
     for (const Timed& timed : report.timed) {
         const PhaseCost& full = timed.cost.full();

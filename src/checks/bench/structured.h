@@ -3,7 +3,8 @@
 
 namespace frana::bench {
 
-/// What structured columns do: deform, yield everywhere and break, are grains from the start, or break beside free water.
+/// What structured columns do: deform, yield everywhere and break, are grains from the start, or break together with
+/// free water.
 enum class ColumnsThat { hold, break_up, are_grains, drain };
 const char* name_of(ColumnsThat what);
 

@@ -18,7 +18,8 @@ constexpr Index kReference = 500000, kFewest = 1000;
 constexpr double kEmptiness = 100.0;      ///< of the wide grid
 constexpr Index kWideParticles = 671089;  ///< fill one per cent of 4096 x 4096 cells: a larger grid fills the memory
 
-/// Scenes that are held against one another, timed in turns with one thread: what else the machine does meets all alike.
+/// Scenes that are compared with one another, timed in turns with one thread. Other work of the machine meets all
+/// alike.
 struct Group {
     std::vector<std::string> models;
     std::vector<Scene> scenes;

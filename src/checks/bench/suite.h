@@ -15,7 +15,7 @@ struct Options {
     std::vector<Index> particles{70000, 500000, 4000000};  ///< of the full step
     std::vector<int> threads{1, 2};
     bool quick = false;                ///< fewer rounds and windows, no more than 500 000 particles, no wide grid
-    Index array_bytes = 0;             ///< of the triad, 0: as the machine's caches ask for
+    Index array_bytes = 0;             ///< of the triad, 0: by the machine's caches
     std::vector<FrameWriter> writers;  ///< timed with the reference blob
 };
 

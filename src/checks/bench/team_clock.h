@@ -8,12 +8,11 @@ namespace frana::bench {
 /// A span of time [s].
 struct Lap {
     double wall = 0.0;
-    double cpu = 0.0;  ///< of the thread of the team that computed most: what the team takes when nobody else computes
+    double cpu = 0.0;  ///< of the thread of the team that computed most: what the team takes without other work
 };
 
-/// From its construction on, teams have `threads` threads. On a machine with other work a thread waits for its turn,
-/// which wall time counts and CPU time does not; waiting for one's own team is spent spinning and counts in both,
-/// nearly.
+/// From its construction on, teams have `threads` threads. On a machine with other work a thread waits for its turn.
+/// Wall time counts that, CPU time does not. Waiting for one's own team is spent spinning and counts in both, nearly.
 class TeamClock {
 public:
     explicit TeamClock(int threads);

@@ -84,11 +84,11 @@ Traffic traffic_of(const std::string& phase, const SolidBody& body) {
 }
 
 Traffic traffic_of(const std::string& phase, const StructuredBody& body) {
-    // Of nodes: mass and momentum; what grains push by and their sub-points' mass; what is bound beside water.
+    // Of nodes: mass and momentum; the pressure of grains and their sub-points' mass; what is bound with water.
     const double grains = body.grains ? 1.0 : 0.0, water = body.water ? 1.0 : 0.0;
     const double node = kNode4 + grains * (kNode4 + kRead) + water * kNode4;
     if (phase == "clear") return {0.0, node};
-    if (phase == "scatter")  // place, v, its gradient, m, V, damage, stress; layer, pull and domain of grains; made of
+    if (phase == "scatter")  // place, v, its gradient, m, V, damage, stress; layer, force and domain of grains; made of
         return {(8.0 + 3.0 + 3.0 + grains * 6.0 + water * 2.0) * kRead, 2.0 * node};
     if (phase == "surface") {
         const Traffic level = depth(body.flow), smooth = filter(body.flow);
@@ -96,7 +96,7 @@ Traffic traffic_of(const std::string& phase, const StructuredBody& body) {
     }
     if (phase == "nodes") return {0.0, node + 2.0 * kNode4 + 8.0 * kRead + grains * (4.0 * kRead + 2.0 * kRead)};
     if (phase ==
-        "gather")  // replaced: v, its gradient, pull, layer; changed: place, depth, stress, damage, strain, domain
+        "gather")  // replaced: v, its gradient, force, layer; changed: place, depth, stress, damage, strain, domain
         return {(8.0 + 2.0 + 1.0 + 4.0 + 2.0 + grains * 4.0 + water * 5.0) * kWrite + 3.0 * kRead, kNode4};
     return {};
 }

@@ -1,5 +1,5 @@
 #pragma once
-// How many bytes each phase of a step has to move, from what it reads and writes: a model, not a measurement.
+// How many bytes each phase of a step has to move, from what it reads and writes. It is a model, not a measurement.
 #include <string>
 
 #include "shallow/flow.h"
@@ -8,8 +8,9 @@
 
 namespace frana::bench {
 
-/// Memory traffic of one call of a phase: every array once per sweep over it, nothing stays in a cache between sweeps.
-/// A number that is written without being read costs its bytes twice (write-allocate), as one that is read and written.
+/// Memory traffic of one call of a phase. Every array counts once per sweep over it, and nothing stays in a cache
+/// between sweeps. A number that is written without being read costs its bytes twice (write-allocate), as one that is
+/// read and written.
 struct Traffic {
     double particle = 0.0;  ///< bytes per particle
     double node = 0.0;      ///< bytes per node of the work list

@@ -47,14 +47,15 @@ struct Campaign {
     std::map<std::string, Index> broken;  ///< cases by the invariant that broke
 };
 
-/// Runs the plan; `report` is told of each failure once it has been shrunk, `stop` is asked before each case.
+/// Runs the plan. `report` gets each failure once it has been shrunk; `stop` is called before each case.
 Campaign run(const Plan& plan, const std::function<void(const Failure&)>& report,
              const std::function<bool()>& stop = {});
 
 /// For people: counts, the mix of models, worst values.
 std::string table_of(const Campaign& campaign);
 /// For programs: {seed, first, scenes, refused, parted, steps, particle_steps, seconds, mix: [{model, scenes, refused,
-/// failed, steps, seconds}], worst: [{invariant, value, model, scene}], failures: [{model, scene, invariant, value, step, time, text, shrunk_...}]}.
+/// failed, steps, seconds}], worst: [{invariant, value, model, scene}], failures: [{model, scene, invariant, value,
+/// step, time, text, shrunk_...}]}.
 std::string json_of(const Campaign& campaign);
 
 }  // namespace frana::stress

@@ -111,7 +111,7 @@ std::vector<SuiteScene> cfl_suite(const Method& method) {
     suite.push_back({"column", scene_with(method, level, column)});
     suite.push_back({"streams", scene_with(method, level, everywhere, 4.0)});
     suite.push_back({"bowl", scene_with(method, bowl, aside)});
-    suite.back().scene.sides = Sides::open;  // a wall is a mirror, which would bend the bowl's rim
+    suite.back().scene.sides = Sides::open;  // a wall is a mirror, which would bend the bowl's edge
     suite.push_back({"slide", scene_with(method, slope, aside)});
     suite.back().scene.bed_law = bed::Voellmy{0.2, 500.0};
     suite.back().scene.sides = Sides::open;

@@ -1,5 +1,6 @@
 #pragma once
-// How long a step each scheme stands: the largest fraction of a cell for which a suite of scenes keeps the invariants.
+// How long a step each scheme stands. It is the largest fraction of a cell for which a suite of scenes satisfies the
+// invariants.
 #include "checks/fuzz/trial.h"
 
 namespace frana::stress {
@@ -23,8 +24,8 @@ struct CflRow {
 const std::vector<double>& cfl_ladder();
 std::vector<Method> cfl_methods();
 
-/// The suite: a dam break on level ground, a column that collapses, streams that meet, a bowl that swings, a slide on
-/// 40 degrees, a viscous mass and a thin film. All have an energy law.
+/// The suite: a dam break on level ground, a column that collapses, streams that meet, a bowl that swings. Also a slide
+/// on 40 degrees, a viscous mass and a thin film. All have an energy law.
 struct SuiteScene {
     std::string name;
     Scene scene;

@@ -1,6 +1,6 @@
 #pragma once
 // A case that exists in memory only: the text of its keys and its rasters. It becomes a Scene on the way that the files
-// of a case take, so that a draft written to a folder is the same case to the last bit.
+// of a case take. So a draft written to a folder is the same case to the last bit.
 #include <map>
 #include <string>
 #include <vector>
@@ -17,18 +17,18 @@ enum class Mirror { none, x, y, diagonal };
 
 /// What must hold of a scene beyond what holds of any.
 struct Claims {
-    bool rests = false;            ///< nothing moves by one bit (a lake: no more than its level asks for)
+    bool rests = false;            ///< nothing moves by one bit (a lake: no more than its level implies)
     Mirror mirror = Mirror::none;  ///< x: west and east change places, y: south and north, diagonal: x and y
     bool threads = false;          ///< one thread and two give the same bits
-    bool resumes = false;          ///< kept half way and taken up again it ends with the same bits
-    bool resolved = false;         ///< the grid resolves its depth and bed: linear shapes keep energy too
+    bool resumes = false;          ///< saved half way and resumed it ends with the same bits
+    bool resolved = false;         ///< the grid resolves its depth and bed: linear shapes conserve energy too
 };
 
 struct Draft {
-    /// "material.bed.mu" -> "0.4": what a case file says, in TOML. Those of `release` belong to its one release;
-    /// of other tables that come more than once each has a number: "stage#0.model".
+    /// "material.bed.mu" -> "0.4": what a case file says, in TOML. Those of `release` belong to its one release. Of
+    /// other tables that come more than once each has a number: "stage#0.model".
     std::map<std::string, std::string> keys;
-    Model model = Model::depth_averaged;  ///< that the keys ask for
+    Model model = Model::depth_averaged;  ///< that the keys give
     /// By file name, on one grid; values that float32 holds, since that is what a GeoTIFF of ours holds.
     std::map<std::string, Raster> rasters;
     Claims claims;

@@ -62,7 +62,7 @@ void mirror(Draft& draft, Mirror mirror) {
     else if (!draft.rasters.count("vx.tif"))
         draft.keys.erase("release.velocity");
     draft.keys["particles.placement"] = "\"lattice\"";
-    // An odd number of points a side would put some on the edges of pixels, and these belong to one of two.
+    // An odd number of points a side would put some on the edges of pixels. These belong to one of two.
     draft.keys["particles.per_cell"] = std::stod(draft.keys["particles.per_cell"]) > 4.0 ? "16" : "4";
     draft.claims.mirror = mirror;
 }
@@ -75,8 +75,8 @@ void draw_pile(Dice& dice, Draft& draft) {
     const bool steep = dice.chance(0.6);
     const double slope = steep ? dice.between(0.0, 1.2) : dice.between(0.0, 0.6);
     const double flank = dice.between(0.02, 0.5), turn = dice.chance(0.5) ? 0.0 : dice.between(0.0, 2 * constants::kPi);
-    // Drive over holding friction where the pile is steepest on the way down; steep ground eases the drive by
-    // 1 + B.e and the normal force by 1 + B^2.
+    // Drive over holding friction where the pile is steepest on the way down. Steep ground eases the drive by 1 + B.e
+    // and the normal force by 1 + B^2.
     const double e = slope + flank;
     const double drive = steep ? e / (1.0 + slope * e) * (1.0 + slope * slope) : e;
     const double mu = drive * dice.between(1.3, 3.0);

@@ -28,7 +28,7 @@ void draw_erodible(Dice& dice, Draft& draft) {
     say(draft, "erodible.law", word);
     const double deepest = dice.decades(1e-3, 0.3) * draft.dem().geometry.cell;
     const bool even = draft.claims.mirror != Mirror::none || dice.chance(0.4);
-    if (even && word != "front")  // which asks for an outline or a raster
+    if (even && word != "front")  // which needs an outline or a raster
         say(draft, "erodible.depth", deepest);
     else
         draw_layer(dice, draft, deepest, even);

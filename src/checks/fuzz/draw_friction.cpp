@@ -1,4 +1,4 @@
-// Friction of a random case that differs in space: of its bed law, its rheology or its water.
+// Spatially varying friction of a random case: of its bed law, its rheology or its water.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@
 namespace frana::stress {
 namespace {
 
-/// A number that the draft gives and that may differ in space.
+/// A number that the draft gives and that may vary spatially.
 struct Placed {
     const Parameter* key;
     std::string in_zone;  ///< its name there

@@ -17,7 +17,7 @@ void draw_late(Dice& dice, Draft& draft) {
     for (Index j = j0; j < std::min(j0 + up, dem.geometry.ny - 2); ++j)
         for (Index i = i0; i < std::min(i0 + across, dem.geometry.nx - 2); ++i)
             if (!std::isnan(dem.at(i, j))) depth.at(i, j) = single(usual * dice.between(0.5, 1.0));
-    for (Index j = 0; j < dem.geometry.ny; ++j)  // not beside holes, which a run would refuse
+    for (Index j = 0; j < dem.geometry.ny; ++j)  // not next to holes, which a run would refuse
         for (Index i = 0; i < dem.geometry.nx; ++i)
             if (!all_near(dem.geometry, i, j, [&](Index a, Index b) { return !std::isnan(dem.at(a, b)); }))
                 depth.at(i, j) = Raster::nodata;

@@ -13,7 +13,7 @@ namespace {
 /// The stage's table.
 std::string key(const std::string& stage, const char* name) { return stage + "." + name; }
 
-/// A law of 3D material, as strong and stiff as its depth asks for within some powers of ten.
+/// A law of 3D material, as strong and stiff as suits its depth within some powers of ten.
 void draw_law(Dice& dice, Draft& draft, const std::string& stage, const Scales& of) {
     const std::string law = dice.one_of(
         {"fluid", "fluid", "fluid", "bingham", "herschel_bulkley", "drucker_prager", "drucker_prager", "elastic"});

@@ -1,4 +1,4 @@
-// Free water: lakes, rain, waves let go, beside little that is solid.
+// Free water: lakes, rain, waves let go, with little that is solid.
 #include <algorithm>
 
 #include "checks/fuzz/draw.h"

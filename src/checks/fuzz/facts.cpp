@@ -206,7 +206,8 @@ void learn_columns(const Scene& scene, const Flow& flow, Facts& facts) {
     facts.hidden_energy = std::max(0.0, facts.release_energy - depth_energy(flow));
 }
 
-/// No column ever stands in such a run: points from the start, and they may leave only where columns cannot stand.
+/// No column ever stands in such a run. There are points from the start, and they may leave only where columns cannot
+/// stand.
 bool is_all_in_3d(const Scene& scene) {
     const std::array<Index, 4>& w = scene.solid->window;
     const GridGeometry& g = scene.bed.geometry;

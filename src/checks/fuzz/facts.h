@@ -14,15 +14,15 @@ struct Facts {
     Index nodes_x = 0, nodes_y = 0;
     bool walls = false;
     bool steep = true;
-    /// The model itself keeps V^2/2 + g z along a path: shallow terrain always (speeds along the map); steep terrain
-    /// where the Hessian that the scheme uses bends the path as the slopes do, and the flow is thin against the radius
-    /// of curvature (whose pressure is none of gravity). Elsewhere a path along a bent bed changes its speed along the
-    /// bed, by the factor `stretch` = sqrt(1 + B^2) between level and steepest.
+    /// The model itself conserves V^2/2 + g z along a path. Shallow terrain always does (speeds along the map). Steep
+    /// terrain does where the Hessian that the scheme uses bends the path as the slopes do. There the flow must be thin
+    /// against the radius of curvature (whose pressure is none of gravity). Elsewhere a path along a bent bed changes
+    /// its speed along the bed. The factor is `stretch` = sqrt(1 + B^2) between level and steepest.
     bool energy_law = true;
     double stretch = 1.0;
-    double release_depth = 0.0;   ///< largest of the release; nodes see it averaged over a cell and more [m]
+    double release_depth = 0.0;   ///< largest of the release; nodes have it averaged over a cell and more [m]
     double release_energy = 0.0;  ///< that its depth alone could set free [J]
-    /// Of release_energy, what the nodes do not see at the start, because they average depths over a cell and more [J].
+    /// Of release_energy, what the nodes do not have at the start, as they average depths over a cell and more [J].
     double hidden_energy = 0.0;
     double loose = 0.0;                                                ///< deepest that an erodible bed may sink [m]
     double inflow_speed = 0.0;                                         ///< fastest that comes in later [m/s]

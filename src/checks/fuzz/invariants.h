@@ -28,80 +28,87 @@ struct Scale {
 double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const Scale& scale);
 
 /// Watches one run, of any model. Bounds (all from the start of the run):
-/// finite: every number of a frame, of points and nodes that have ground, and of the status.
-/// mass: sum of points and what left is the start's, to eps (points + steps) / 2, each sum and merger rounding once.
-/// Where
-///   there is water as well, or two models pass material on, it is the status' sum, to `kMassShare` at least: each cell
-///   of water rounds once a step. Rain and infiltration count as what came and left.
-/// positive: depth > 0 on wet nodes and >= 0 on all, mass > 0 of each point.
-/// momentum: points' momentum changes by the impulse recorded, to round-off of mass times the largest speed so far a
-///   step, and of the two sums over points, each of which rounds once a point. Between walls it holds by definition
-///   for the depth-averaged flow (Status::impulse). Other models book weight and pressure each; where material rests
-///   they cancel, so that what rounds is mass times g t and the speed of waves, and once a node besides.
-/// energy: K + E_p + E_stored + E_left <= start + `kEnergyShare` of the energy at hand (start's kinetic, that of its
-/// depth) and
-///   turned over, where the model has an energy law. Truncation errs by a share of what is there, most at steps of the
-///   depth that no grid resolves; what is unstable grows by a factor a step and passes any share. The start is that of
-///   the release: a column of one pixel has on nodes, which average its depth, a fraction of its energy, and the nodes
-///   see more or less of it as its points move and split. Not for linear shapes, but in scenes claimed to be resolved:
-///   their gradients jump at nodes, so that work and potential differ by a share that no time step mends (seed 77003,
-///   scene 1805: 1.04, 1.02 and 1.03e6 J gained at a scheme.cfl of 0.28, 0.1 and 0.03, a fifth of that with quadratic
-///   and cubic ones). Nor where the bed turns velocities by so much across a cell that the square of it, which a scheme
-///   of second order errs by, is more than `kEnergyShare` (seed 161803, scenes 3519 and 8685 turn by 0.47 and 0.40,
-///   with a curvature that is not smoothed: 1.42e6 and 778 J gained, 1.29e6 and 612 J with steps six and nine times
-///   shorter; no more than is allowed with the default smoothing). Over a bed bent
-///   within a cell a point's potential (of the nodes around it) and its slope (which reaches a node further) differ by
-///   second differences of the bed. Beside open sides sub-points are held inside by up to 3/4 of a cell, and a point's
-///   potential with them (seed 577215, scene 8982: a point on a plane of 35 degrees that slides up to the side). Where
-///   the surface slopes against the bed (the flank of a heap that runs uphill) the drive is the plain gradient
-///   (grid_update_bed.h), and keeps the energy of the horizontal velocity: what the vertical one adds, B^2 / (1 + B^2)
-///   of K, is the model's own, of what is there and of what left with it. That takes a depth that changes by more than
-///   the bed, so B there is at most the largest depth over a cell. Not for the paper preset, whose explicit forces act
-///   on nodes of vanishing mass. Structured columns and water bend with no Hessian: their energy is looked at on ground
-///   that does not bend. Columns that go under a lake lift the water over them; a shore within a cell, and cells of
-///   water that reach half a cell behind a wall, do not take that back by up to the displaced weight over the drop of a
-///   cell, nor, where only a share of the pores' pressure bears columns (water.pore_pressure), the rest of it over the
-///   whole fall. 3D points have an energy law anywhere, and none of the excuses above; a run with columns as well has
-///   those of columns.
-/// speed (columns and water): V^2 <= (1 + kConvergence)^2 stretch^4 ((v0 + 2 s sqrt(g h))^2 + 2 g drop) with v0 and
-/// highest surface of the
-///   start, h the largest depth (which pushes: of nodes, or what points carry) and drop to the lowest bed so far.
-///   stretch is 1 where the model has an energy law; elsewhere a bend may turn a speed along the map into `stretch`
-///   times that along the bed, which carries it up by stretch^2 of the height, to fall again. The energy line's v0^2 +
-///   2 g drop alone is no bound of a fluid: the tip of a dam break runs at 2 sqrt(g h) (Ritter 1892), driven by what
-///   stays behind. One that runs uphill is driven by the plain gradient, so it is the horizontal velocity that has this
-///   bound, and s = sqrt(1 + B^2) with the B of `energy` (1 where stretch has it). kConvergence: that in turn is a
-///   bound along one direction; streams that converge from two may pass it a little (1 % has been seen), while what is
-///   unstable passes it by factors. Nor does it bind the affine transfers where velocity changes from cell to cell: no
-///   linear transfer of second order keeps extremes (Godunov 1959), and these bring nodes a cell away from a point its
-///   velocity and the change across a cell besides. Where the largest such change so far is more than kConvergence of
-///   the bound it takes its place, up to the bound itself; so it does in the paper preset, which no energy line binds
-///   (see `energy`; seed 888, scene 8148: a column of 138 m whose outer points run 1.48 times as fast as the bound in
-///   four steps). Neither energy nor speed is looked at with water's virtual mass, which a step takes from an estimate
-///   of what drives the water, so that columns part from it by what that gets wrong (speeds of up to three times the
-///   bound have been seen). The energy of the virtual mass, half of it times the slip's square, would not close the
-///   book: that estimate does work on the slip which no term takes back, and the mass changes with the mixture where
-///   neither phase is pushed.
-/// head (3D points): z + V^2 / 2g of each point is no higher than the highest surface of the start, and above it the
-///   head of a front, (1 + kConvergence)^2 (v0 + 2 sqrt(g h))^2 / 2g with v0 and h of `speed`, `kEnergyShare` of what
-///   the point has fallen, and a cell of the 3D grid, within which the ground's height is not told apart. Or, where
-///   that is more, (kBlow v0 + 2 sqrt(g h))^2 / 2g: what is squeezed between heavy material that comes from opposite
-///   sides leaves at up to three times its speed, by the law of elastic blows, and material that strikes ground or
-///   itself spouts. Seed 2's scene 992 and seed 25112's 149, 370 and 667 do: points leave at 1.6 to 2.4 v0, in one of
-///   them at 3.1 v0 in shorter steps, while all of it loses energy. In runs that have columns as well, points begin up
-///   to a cell of the terrain up a slope from their column, and with the speed that its path gave it: the drop of a
-///   cell, and the `stretch` of `speed`, come on top.
-/// rest (claimed scenes): a pile's positions and velocities are those of the start, bit for bit. A lake is level as far
-///   as points at these places can make it so (MassFit::level_error); it moves no faster than the front of a dam break
-///   as high as round-off, 2 sqrt(g e) (Ritter 1892), where the fit met the level; otherwise than one as high as its
-///   surface is off the level, on that bed: with the factors (1 + kConvergence) stretch^2 of `speed`.
-/// symmetry: depth and momentum of mirrored nodes agree within `kMirrorError` of the largest (claimed scenes). Momentum
-///   besides to the round-off of what cancels: a step's pressure pulls each way by up to sqrt(g h), which rounds some
-///   sixteen times; where nothing else moves, all that moves is that. Round-off that the flow makes grow is no defect
-///   of the images: see has_grown() in trial.h, and part().
-/// threads, resume (claimed scenes; trial.cpp): all that a simulation keeps, but for its clock, has the same bits after
-/// one
-///   thread and two, and after a run that was kept half way and taken up again.
+/// - finite: every number of a frame, of points and nodes that have ground, and of the status.
+/// - mass: the sum of points and what left is the start's, to eps (points + steps) / 2. Each sum and merger rounds
+///   once.
+///   Where there is water as well, or two models exchange material, it is the status' sum, to `kMassShare` at least.
+///   Each cell of water rounds once a step. Rain and infiltration count as what came and left.
+/// - positive: depth > 0 on wet nodes and >= 0 on all, mass > 0 of each point.
+/// - momentum: points' momentum changes by the impulse recorded, to round-off. That is of mass times the largest speed
+///   so far a step, and of the two sums over points. Each of these rounds once a point.
+///   Between walls it holds by definition for the depth-averaged flow (Status::impulse). Other models accumulate
+///   weight and pressure separately. Where material rests these cancel. So what rounds is mass times g t and the
+///   speed of waves, and once a node besides.
+/// - energy: K + E_p + E_stored + E_left <= start + `kEnergyShare` of the energy at hand and turned over, where the
+///   model has an energy law. At hand are the start's kinetic energy and that of its depth.
+///   Truncation errs by a share of what is there, most at steps of the depth that no grid resolves. What is unstable
+///   grows by a factor a step and passes any share.
+///   The start is that of the release. On nodes, which average its depth, a column of one pixel has a fraction of its
+///   energy. The nodes have more or less of it as its points move and split.
+///   Linear shapes have this bound only in scenes claimed to be resolved. Their gradients jump at nodes, so work and
+///   potential differ by a share that no time step mends. (Seed 77003, scene 1805: 1.04, 1.02 and 1.03e6 J gained at
+///   a scheme.cfl of 0.28, 0.1 and 0.03. With quadratic and cubic shapes a fifth of that.)
+///   Nor does it hold where the bed turns velocities too much across a cell. The square of that turn, by which a scheme
+///   of second order errs, is then more than `kEnergyShare`. (Seed 161803, scenes 3519 and 8685 turn by 0.47
+///   and 0.40, with a curvature that is not smoothed. They gain 1.42e6 and 778 J, and 1.29e6 and 612 J with steps six
+///   and nine times shorter. With the default smoothing they gain no more than is allowed.)
+///   Over a bed bent within a cell a point's potential and its slope differ by second differences of the bed. The
+///   potential is of the nodes around it, and the slope reaches a node further.
+///   At open sides sub-points are held inside by up to 3/4 of a cell, and a point's potential with them. (Seed
+///   577215, scene 8982: a point on a plane of 35 degrees that slides up to the side.)
+///   Where the surface slopes against the bed the drive is the plain gradient (grid_update_bed.h). An example is the
+///   flank of a heap that runs uphill. It conserves the energy of the horizontal velocity. What the vertical one adds,
+///   B^2 / (1 + B^2) of K, is the model's own. That is so for what is there and for what left with it. That takes a
+///   depth that changes by more than the bed. So B there is at most the largest depth over a cell.
+///   It does not hold for the paper preset, whose explicit forces act on nodes of vanishing mass. Structured columns
+///   and water bend with no Hessian: their energy is checked on ground that does not bend.
+///   Columns that go under a lake lift the water over them. A shore within a cell, or cells of water that reach half a
+///   cell behind a wall, do not take that back. They miss up to the displaced weight over the drop of a cell. Where
+///   only a share of the pores' pressure bears columns (water.pore_pressure), they miss its rest over the whole fall.
+///   3D points have an energy law anywhere, and none of the exceptions above. A run with columns as well has those of
+///   columns.
+/// - speed (columns and water): V^2 <= (1 + kConvergence)^2 stretch^4 ((v0 + 2 s sqrt(g h))^2 + 2 g drop). v0 and the
+///   highest surface are those of the start. h is the largest depth that exerts pressure: of nodes, or what points
+///   carry. drop goes to the lowest bed so far.
+///   stretch is 1 where the model has an energy law. Elsewhere a bend may turn a speed along the map into `stretch`
+///   times that along the bed. That carries it up by stretch^2 of the height, to fall again.
+///   The energy line's v0^2 + 2 g drop alone is no bound of a fluid. The tip of a dam break runs at 2 sqrt(g h)
+///   (Ritter 1892), driven by what stays behind. A tip that runs uphill is driven by the plain gradient. So it is the
+///   horizontal velocity that has this bound. s = sqrt(1 + B^2) with the B of `energy` (1 where stretch has it).
+///   kConvergence: that in turn is a bound along one direction. Streams that converge from two may pass it a little (1
+///   % has been seen). What is unstable passes it by factors.
+///   Nor does it bind the affine transfers where velocity changes from cell to cell. No linear transfer of second
+///   order preserves extremes (Godunov 1959). These bring nodes a cell away from a point its velocity, and the change
+///   across a cell besides. If the largest such change so far is more than kConvergence of the bound, it takes its
+///   place. It does so up to the bound itself. So it does in the paper preset, which no energy line binds (see
+///   `energy`). (Seed 888, scene 8148: a column of 138 m. Its outer points run 1.48 times as fast as the bound in four
+///   steps.)
+///   Neither energy nor speed is checked with water's virtual mass. A step takes that from an estimate of what drives
+///   the water. Columns part from it by what the estimate gets wrong. (Speeds of up to three times the bound have
+///   been seen.) The energy of the virtual mass, half of it times the slip's square, would not close the budget. That
+///   estimate does work on the slip which no term takes back. And the mass changes with the mixture where no force
+///   acts on either phase.
+/// - head (3D points): z + V^2 / 2g of each point is no higher than the highest surface of the start and what follows.
+///   First comes the head of a front, (1 + kConvergence)^2 (v0 + 2 sqrt(g h))^2 / 2g with v0 and h of `speed`. Then
+///   comes `kEnergyShare` of what the point has fallen. A cell of the 3D grid is added, within which the ground's
+///   height is not told apart.
+///   Where it is more, the front's head is (kBlow v0 + 2 sqrt(g h))^2 / 2g. Heavy material may come from opposite
+///   sides. What is squeezed between leaves at up to three times its speed, by the law of elastic blows. Material that
+///   strikes ground or itself spouts. Seed 2's scene 992 and seed 25112's 149, 370 and 667 do. Points leave at 1.6 to
+///   2.4 v0, in one of them at 3.1 v0 in shorter steps. All of it loses energy meanwhile.
+///   In runs that have columns as well, points may begin up a slope from their column, by a terrain cell. They
+///   have the speed that its path gave it. So the drop of a cell, and the `stretch` of `speed`, come on top.
+/// - rest (claimed scenes): a pile's positions and velocities are those of the start, bit for bit. A lake is level as
+///   far as points at these places can make it so (MassFit::level_error). Where the fit met the level, it moves no
+///   faster than a dam break's front, 2 sqrt(g e) (Ritter 1892). The dam break is as high as round-off. Otherwise it is
+///   as high as the lake's surface is off the level, on that bed. It then has the factors (1 + kConvergence) stretch^2
+///   of `speed`.
+/// - symmetry: depth and momentum of mirrored nodes agree within `kMirrorError` of the largest (claimed scenes).
+///   Momentum agrees besides to the round-off of what cancels. A step's pressure changes it each way by up to sqrt(g
+///   h), which rounds some sixteen times. Where nothing else moves, all that moves is that. Round-off that the flow
+///   makes grow is no defect of the mirror images: see has_grown() in trial.h, and part().
+/// - threads, resume (claimed scenes; trial.cpp): all that a simulation serializes has the same bits after one thread
+///   and two, but for its clock. So it has after a run that was saved half way and resumed.
 class Watch {
 public:
     static constexpr double kEnergyShare = 0.1;
@@ -114,7 +121,7 @@ public:
     std::optional<Violation> observe(const Snapshot& state);
     /// Largest depth and speed so far, the latter with the round-off of what cancels.
     Scale scale(Index step) const;
-    /// Mirror images have parted for a good reason: symmetry is not looked at any more.
+    /// Mirror images have parted for a good reason: symmetry is not checked any more.
     void part();
     /// Largest value so far of each invariant that has a number, in units of what is allowed.
     const std::map<std::string, double>& worst() const { return worst_; }

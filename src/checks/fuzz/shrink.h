@@ -7,7 +7,7 @@
 namespace frana::stress {
 
 /// The smallest draft found whose verdict still breaks the same invariant as `draft`, and that verdict. Tries fewer
-/// steps, a smaller grid, less and plainer material, plainer ground, and keys at their defaults, over and over until
+/// steps, a smaller grid, less and plainer material, plainer ground, and keys at their defaults. Repeats that until
 /// nothing helps or `budget` trials are spent. `judge` runs a draft.
 struct Shrunk {
     Draft draft;

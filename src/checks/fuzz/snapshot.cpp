@@ -76,8 +76,7 @@ double fastest_of(const Frame& frame, const PointStates& points) {
     return fastest;
 }
 
-/// What the depth-averaged flow knows to the last bit: places and velocities as they are carried, and all nodes that
-/// points touch.
+/// What the depth-averaged flow has to the last bit: places and velocities as they are carried, all nodes in reach.
 void sharpen(const DepthAveraged& simulation, bool steep, Snapshot& shot) {
     const Flow& flow = simulation.flow();
     PointStates& points = shot.points;

@@ -1,5 +1,5 @@
 #pragma once
-// All that the invariants look at, copied out of a simulation after a step: plain data, which a test can falsify.
+// All that the invariants read, copied out of a simulation after a step. It is plain data, which a test can falsify.
 #include <cstdint>
 #include <vector>
 
@@ -24,7 +24,7 @@ struct PointStates {
     std::vector<double> x, y;    ///< from the terrain's first node [cells]
     std::vector<double> z;       ///< of 3D points their height, of columns that of their surface [m]
     std::vector<double> vx, vy;  ///< along the map; of the depth-averaged flow half a step behind [m/s]
-    std::vector<double> speed;   ///< along the bed or in space [m/s]
+    std::vector<double> speed;   ///< along the bed or in 3D [m/s]
     std::vector<double> mass;    ///< [kg]
     std::vector<double> depth;   ///< [m]
     std::vector<double> change;  ///< of the velocity across a cell, of columns; else empty [m/s]
@@ -42,7 +42,7 @@ struct Snapshot {
     std::vector<NodeState> nodes;
     Index not_finite = 0;  ///< numbers of the frame that are not, but for nodes without ground
 
-    /// Of all material, in space too [m/s].
+    /// Of all material, in 3D too [m/s].
     double fastest() const;
 };
 

@@ -41,7 +41,7 @@ Bits run_with(const Scene& scene, int threads, Index steps) {
     return state_bits(*simulation);
 }
 
-/// The same, kept half way and taken up again.
+/// The same, saved half way and resumed.
 Bits run_with_pause(const Scene& scene, Index steps) {
     MemoryArchive kept;
     {
@@ -100,7 +100,7 @@ double disturbed_asymmetry(const Scene& scene, const Facts& facts, const Scale& 
 void excuse_growth(const Scene& scene, const Facts& facts, Watch& watch, Verdict& verdict) {
     if (verdict.broken->invariant != "symmetry") return;
     if (!has_grown(scene, facts, watch.scale(verdict.broken->step), *verdict.broken)) return;
-    watch.part();  // the last invariant that observe() looks at: none other is broken
+    watch.part();  // the last invariant that observe() checks: none other is broken
     verdict.broken.reset();
     verdict.parted = true;
 }

@@ -20,14 +20,14 @@ struct Verdict {
 /// Stops a run whose points have multiplied beyond this: it says no more than a shorter one.
 constexpr Index kMostPoints = 60000;
 
-/// Falsifies a state before it is judged, so that tests see that it is.
+/// Falsifies a state before it is judged, so that tests can check the judging.
 using Falsify = std::function<void(Snapshot&)>;
 
 /// Whether a difference between mirror images is round-off that the flow itself made grow, as streams that meet do. Then it
-/// is in proportion to what disturbed the images at first: a twin whose points' masses are off by `kDisturbed` times the
-/// round-off that depths have (that of the elevation, over the depth), each its own way, has a difference at that step more
-/// than 1 / `kShare` times as large; the rest is for the round-off of all steps since. What the code itself does to one
-/// of the images, and a choice that round-off tips, is as large in the twin.
+/// is in proportion to what disturbed the images at first. In a twin the points' masses are off by `kDisturbed` times
+/// the round-off of depths, each its own way. (That is the elevation's round-off over the depth.) The twin's difference
+/// at that step is more than 1 / `kShare` times as large. The rest is for the round-off of all steps since. What the
+/// code itself does to one of the images is as large in the twin. So is a choice that round-off tips.
 bool has_grown(const Scene& scene, const Facts& facts, const Scale& scale, const Violation& difference);
 constexpr double kDisturbed = 1e4, kShare = 0.1;
 

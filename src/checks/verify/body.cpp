@@ -30,7 +30,7 @@ void for_each_part(const Vec3& low, const Vec3& high, double cell, int per_cell,
 }
 
 GridGeometry3d grid_around(const Frame3& frame, const Vec3& low, const Vec3& high, double cell) {
-    constexpr double kRoom = 4.0;  // cells: what images of points on a surface reach
+    constexpr double kRoom = 4.0;  // cells: what mirror particles of points on a surface reach
     Vec3 least = frame.at(low), most = least;
     for (int corner = 1; corner < 8; ++corner) {
         const Vec3 x =

@@ -16,12 +16,11 @@ struct Frame3 {
 Frame3 turned_about_y(double degrees);
 
 /// Calls take(place, volume) for the centres of `per_cell`^3 parts of each cell of a box, in the problem's
-/// own axes. The box is a whole number of parts long in each direction, or the parts are stretched a little
-/// to be so.
+/// own axes. The box is a whole number of parts long in each direction. If not, the parts are stretched a little.
 void for_each_part(const Vec3& low, const Vec3& high, double cell, int per_cell,
                    const std::function<void(const Vec3& place, double volume)>& take);
 
-/// A grid that holds a box given in the problem's axes, with room for images.
+/// A grid that holds a box given in the problem's axes, with room for mirror particles.
 GridGeometry3d grid_around(const Frame3& frame, const Vec3& low, const Vec3& high, double cell);
 
 /// The two planes at y = 0 and y = width that make a slice of a plane problem.
@@ -31,11 +30,11 @@ void add_slice(SolidScene& scene, double width);
 /// and gravity leaves open, over all momentum that went round.
 Measurement run_body(Mpm3d& flow, double end, const std::function<void(const Mpm3d&)>& each = {});
 
-/// Shares of an energy [J] that a run turned over, as extras: what the scheme lost of it, and what the law did.
+/// Shares of an energy [J] that a run turned over, as extras. They are what the scheme lost of it, and what the law
+/// did.
 void add_energies(Measurement& m, const Mpm3d& flow, double turned_over);
 
-/// Runs of one problem as one: steps and times add up, and the larger residual counts; the rest is the later
-/// run's.
+/// Runs of one problem as one. Steps and times add up, and the larger residual counts. The rest is the later run's.
 Measurement joined(const Measurement& before, const Measurement& now);
 
 }  // namespace frana::verify

@@ -4,8 +4,8 @@
 
 namespace frana::verify {
 
-/// Distances from the box between two corners [m], sampled as a case's meshes are: twice a cell of that size [m], and as far
-/// beyond it as material meets it.
+/// Distances from the box between two corners [m], sampled as a case's meshes are. There are two nodes a cell of that
+/// size [m], as far beyond the box as material meets it.
 DistanceField box_as_mesh(const Vec3& low, const Vec3& high, double cell);
 
 }  // namespace frana::verify

@@ -49,8 +49,8 @@ ErodingSheet::Slopes ErodingSheet::slopes() const {
             (brake(h + dh, u) - brake(h - dh, u)) / (2.0 * dh), (brake(h, u + du) - brake(h, u - du)) / (2.0 * du)};
 }
 
-// With a = i k u - E_h, c = i k u + F_u + 2 nu k^2, d = i k h - E_u, e = i k g cos + F_h the three equations are
-// (s + a) h' + d u' = 0, s b' = -(E_h h' + E_u u') and e h' + (s + c) u' + i k g cos b' = 0.
+// Let a = i k u - E_h, c = i k u + F_u + 2 nu k^2, d = i k h - E_u, e = i k g cos + F_h. The three equations are (s +
+// a) h' + d u' = 0, s b' = -(E_h h' + E_u u') and e h' + (s + c) u' + i k g cos b' = 0.
 BedWave ErodingSheet::fastest(double k) const {
     const Slopes at = slopes();
     const double u = speed(), gn = gravity * cosine();

@@ -15,10 +15,10 @@ struct BedWave {
     double growth() const { return rate.real(); }
 };
 
-/// A layer with the drag g u^2 / (xi h), which slides down a plane at its normal speed over a bed of its own density:
+/// A layer with the drag g u^2 / (xi h). It slides down a plane at its normal speed over a bed of its own density:
 ///   h_t + (h u)_x = E,   b_t = -E,   u_t + u u_x + g cos (h + b)_x = g sin - g u^2 / (xi h) - (1 - kappa) E u / h + 2 nu u_xx.
-/// Without nu waves on it are ill-posed at a Froude number of 1, where the slow wave stands over the bed (Langham et al.
-/// 2021, J. Fluid Mech.): short ones grow at a rate that goes as the root of k, see short_limit().
+/// Without nu waves on it are ill-posed at a Froude number of 1 (Langham et al. 2021, J. Fluid Mech.). There the slow
+/// wave stands over the bed. Short ones grow at a rate that goes as the root of k, see short_limit().
 struct ErodingSheet {
     double froude = 1.0;     ///< u / sqrt(g cos h)
     double gradient = 0.05;  ///< tangent of the slope
@@ -35,8 +35,8 @@ struct ErodingSheet {
 
     /// Of the three waves with the wave number k [1/m] the one that grows fastest.
     BedWave fastest(double k) const;
-    /// Rate at a Froude number of 1 to the leading order in k: Re sqrt(i k g cos (u E_u - h E_h) / (2 u)). So a law whose
-    /// rate goes as h u has no such growth (growth), one that knows only u (jump) or only h (steady) has it.
+    /// Rate at a Froude number of 1, leading order in k: Re sqrt(i k g cos (u E_u - h E_h) / (2 u)). So a law whose
+    /// rate goes as h u has no such growth (growth). One that depends only on u (jump) or only on h (steady) has it.
     double short_limit(double k) const;
     /// What is left of the three equations for that wave, over the largest term of each.
     double residual(double k, const BedWave& wave) const;

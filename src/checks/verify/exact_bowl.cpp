@@ -40,8 +40,8 @@ Left left_at(const Bowl& bowl, double x, double y, double t) {
             along(&BowlState::v) + kGravity * slope([&](double s) { return level(x, s); }, y)};
 }
 
-/// Volume at time t: each line in x holds a parabola, integrated between its roots from three of its values; the
-/// lines are added by midpoints.
+/// Volume at time t. Each line in x holds a parabola, integrated between its roots from three of its values. The lines
+/// are added by midpoints.
 double volume_at(const Bowl& bowl, double t) {
     constexpr int lines = 4000;
     double sum = 0.0;
@@ -170,7 +170,7 @@ std::vector<Residual> residuals_of(const Bowl& bowl) {
                                  {"equation of momentum in x [m/s^2]", worst.x, 1e-10},
                                  {"equation of momentum in y [m/s^2]", worst.y, 1e-10},
                                  {"volume / exact - 1", volume, 1e-7},              // 4000 lines to the power -2.5
-                                 {"energy above rest / exact - 1", energy, 1e-3}};  // (4 m / 400)^2 times the rim
+                                 {"energy above rest / exact - 1", energy, 1e-3}};  // (4 m / 400)^2 times the edge
     all.insert(all.end(), bowl.published.begin(), bowl.published.end());
     return all;
 }

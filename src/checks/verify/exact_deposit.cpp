@@ -9,8 +9,8 @@ namespace {
 
 using constants::kDegree;
 
-/// Integral of weight(x) depth(x) from 0 to `front` for a depth that ends as a square root: x = front (1 - w^2) makes it
-/// smooth, and the midpoint rule second order.
+/// Integral of weight(x) depth(x) from 0 to `front` for a depth that ends as a square root. x = front (1 - w^2) makes
+/// it smooth, and the midpoint rule second order.
 template <class Deposit, class Weight>
 double volume_of(const Deposit& deposit, const Weight& weight) {
     constexpr int parts = 4000;

@@ -1,6 +1,7 @@
 #pragma once
-// Deposits of a material with a yield stress that came to rest marginally everywhere: on flat ground in the plane and
-// round an axis (Nye 1952; Liu and Mei 1989; Balmforth et al. 2006), and on an incline (Coussot and Proust 1996).
+// Deposits of a material with a yield stress that came to rest marginally everywhere. On flat ground they are in the
+// plane and round an axis (Nye 1952; Liu and Mei 1989; Balmforth et al. 2006). Others are on an incline (Coussot and
+// Proust 1996).
 #include <vector>
 
 #include "checks/verify/problem.h"
@@ -35,9 +36,10 @@ struct RoundDeposit {
     std::vector<Residual> residuals() const;
 };
 
-/// On an incline, front down-slope, behind it a vertical wall at x = 0. With H = h/h_c, h normal to the bed and h_c the
-/// plug's thickness, rho g h (sin th - cos th dh/dX) = tau_Y has s = (h_c / tan th) (-H - ln(1 - H)), s up-slope from
-/// the front along the bed. Here it is read where the map sees it: depth above x of the surface's own place.
+/// On an incline, front down-slope, behind it a vertical wall at x = 0. Let H = h/h_c, h normal to the bed and h_c the
+/// plug's thickness. Then rho g h (sin th - cos th dh/dX) = tau_Y has s = (h_c / tan th) (-H - ln(1 - H)). s is
+/// up-slope from the front along the bed. Here it is read as on the map: depth above x of the surface's own
+/// place.
 class InclineDeposit {
 public:
     InclineDeposit(const YieldMaterial& material, double slope, double volume);

@@ -1,5 +1,5 @@
 #pragma once
-// Flows that take up their bed: slabs on a plane, the trench behind a block, a cap that spreads as it grows. Lengths run along
+// Flows that take up their bed: slabs on a plane, the trench behind a block, a growing cap. Lengths run along
 // the slope and normal to it. kappa is the share of the flow's velocity that what is taken brings along.
 #include "checks/verify/problem.h"
 
@@ -27,16 +27,16 @@ struct ErodingSlab {
     double time_to(double growth, double way) const;
 };
 
-/// Depth that a rigid block of uniform thickness h0 and length L takes at x behind its first front, after the way S, by
-/// E = growth h u.
+/// Depth that a rigid block takes at x behind its first front, after the way S, by E = growth h u. The block has
+/// uniform thickness h0 and length L.
 struct Trench {
     double growth = 2e-3, length = 50.0, thickness = 1.0, way = 300.0;
     double depth(double x) const;
     double volume() const;  ///< per width: h0 L (exp(growth S) - 1) [m^2]
 };
 
-/// A parabolic cap from rest that grows by E = eps h and spreads by its pressure: h = h_m (1 - (X/L)^2), u = u_c + X L'/L,
-/// L'' = 2 g cos(slope) h_m / L - (1 - kappa) eps L', u_c' = a - (1 - kappa) eps u_c.
+/// A parabolic cap from rest that grows by E = eps h and spreads by its pressure: h = h_m (1 - (X/L)^2), u = u_c + X
+/// L'/L. There L'' = 2 g cos(slope) h_m / L - (1 - kappa) eps L', u_c' = a - (1 - kappa) eps u_c.
 struct GrowingCap {
     double slope_deg = 35.0, friction_deg = 25.0, gravity = 9.81;
     double height = 4.0, half_length = 80.0, eps = 0.05, kappa = 0.0;

@@ -77,8 +77,8 @@ double dam_error(double hr, Index cells) {
     return error_of(water, depth);
 }
 
-/// A round cap h = H (1 - r^2/R^2) on flat ground stays one: R^2 = R0^2 + 2 g H0 t^2 (u = r R'/R turns the momentum
-/// equation into R'' = 2 g H/R with H R^2 constant). L1 error after the radius has about doubled.
+/// A round cap h = H (1 - r^2/R^2) on flat ground stays one: R^2 = R0^2 + 2 g H0 t^2. (u = r R'/R turns the momentum
+/// equation into R'' = 2 g H/R with H R^2 constant.) L1 error after the radius has about doubled.
 double cap_error(Index cells) {
     constexpr double height = 1.0, radius = 4.0, end = 1.2;
     LineWater water(LineWater::Symmetry::axis, 16.0, cells,

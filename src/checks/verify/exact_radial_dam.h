@@ -1,5 +1,5 @@
 #pragma once
-// A round column of water is let go on flat ground: no formula is known, so the reference is a finite-volume solution
+// A round column of water is let go on flat ground. No formula is known. So the reference is a finite-volume solution
 // in the radius alone, far finer than any grid it judges.
 #include <vector>
 
@@ -7,9 +7,9 @@
 
 namespace frana::verify {
 
-/// Shallow water on flat ground in one coordinate r from a wall or an axis at r = 0, by a second-order finite-volume
-/// scheme: limited linear states of depth and velocity, fluxes of Harten, Lax and van Leer (1983), two-stage
-/// Runge-Kutta. With an axis: d(r h) + d(r h u) = 0, d(r h u) + d(r (h u^2 + g h^2 / 2)) = g h^2 / 2.
+/// Shallow water on flat ground in one coordinate r from a wall or an axis at r = 0. The finite-volume scheme is of
+/// second order. It has limited linear states of depth and velocity, fluxes of Harten, Lax and van Leer (1983), and
+/// two-stage Runge-Kutta. With an axis: d(r h) + d(r h u) = 0, d(r h u) + d(r (h u^2 + g h^2 / 2)) = g h^2 / 2.
 class LineWater {
 public:
     enum class Symmetry { plane, axis };
@@ -38,7 +38,7 @@ private:
     std::vector<State> low_, high_;  ///< depth and velocity (as q) at a cell's two faces
 };
 
-/// A column of radius 8 m and depth 1 m in still water of another depth (0: on dry ground), 2 s later.
+/// A column of radius 8 m and depth 1 m in still water of another depth, 2 s later. Depth 0: on dry ground.
 class RadialDam {
 public:
     static constexpr double kRadius = 8.0, kDepth = 1.0, kEnd = 2.0;

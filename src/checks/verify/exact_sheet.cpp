@@ -62,7 +62,7 @@ double BagnoldSheet::speed(double z) const {
 double BagnoldSheet::mean_speed() const { return 0.6 * speed(thickness); }
 
 std::vector<Residual> BagnoldSheet::residuals() const {
-    // With w = sqrt(1 - z/h) the profile is a polynomial of w, and its mean one of degree 4: two pieces are not exact,
+    // With w = sqrt(1 - z/h) the profile is a polynomial of w, and its mean one of degree 4. Two pieces are not exact,
     // 128 are to 1e-10.
     const double mean = mean_of([&](double w) { return 2 * w * speed(thickness * (1 - w * w)); }, 0.0, 1.0, 128);
     const double z = 0.3 * thickness, d = 1e-4 * thickness;  // difference formula: (d / (h - z))^2 / 24

@@ -7,7 +7,7 @@
 
 namespace frana::verify {
 
-/// A sheet that shears where the shear stress rho g sin(th) (h - z) exceeds the yield stress, and is a plug above.
+/// A sheet that shears where the shear stress rho g sin(th) (h - z) exceeds the yield stress. It is a plug above.
 struct BinghamSheet {
     double density, viscosity, yield_stress;  ///< [kg/m^3], [Pa s], [Pa]; yield stress 0: Newtonian
     double slope;                             ///< [rad]

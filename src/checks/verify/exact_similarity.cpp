@@ -67,7 +67,7 @@ std::vector<Residual> SimilarityPile::residuals() {
     return list;
 }
 
-/// The printed series starts at 0.1, which shifts g by 4e-6; from there the figures must agree to the last digit.
+/// The printed series starts at 0.1, which shifts g by 4e-6. From there the figures must agree to the last digit.
 std::vector<Residual> SimilarityPile::published() {
     constexpr double start = 0.1;
     const SimilarityPile pile(35, 25, 80, 4);

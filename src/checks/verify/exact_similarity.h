@@ -1,6 +1,6 @@
 #pragma once
-// A parabolic pile of granular material that slides down a plane and spreads both ways (Hutter, Siegel, Savage and
-// Nohguchi 1993; the setting of AvaFrame's avaSimilaritySol).
+// A parabolic pile of granular material slides down a plane and spreads both ways. (Hutter, Siegel, Savage and Nohguchi
+// 1993.) It is the setting of AvaFrame's avaSimilaritySol.
 #include <vector>
 
 #include "checks/verify/ode.h"

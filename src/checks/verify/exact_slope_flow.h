@@ -6,7 +6,7 @@
 
 namespace frana::verify {
 
-/// Dam break on a plane under Coulomb friction (Mangeney et al. 2000): Ritter's fan in a frame that falls with
+/// Dam break on a plane under Coulomb friction (Mangeney et al. 2000). It is Ritter's fan in a frame that falls with
 /// `drive`. Lengths along x, gravity across the layer; x = 0 is the dam, material fills x < 0.
 struct SlopeDam {
     double depth;    ///< of the reservoir [m]
@@ -23,8 +23,8 @@ struct SlopeDam {
     static std::vector<Residual> published();
 };
 
-/// A parabolic cap that spreads while it slides: h = hc / l (1 - (x - drive t^2/2)^2 / (w l)^2) with
-/// l'' = 2 g hc / (w^2 l^2), l(0) = 1, l'(0) = 0 (Savage and Hutter 1989, one dimension).
+/// A parabolic cap that spreads while it slides (Savage and Hutter 1989, one dimension): h = hc / l (1 - (x - drive
+/// t^2/2)^2 / (w l)^2). There l'' = 2 g hc / (w^2 l^2), l(0) = 1, l'(0) = 0.
 struct SlidingCap {
     double depth;       ///< hc [m]
     double half_width;  ///< w [m]

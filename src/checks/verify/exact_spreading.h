@@ -1,6 +1,7 @@
 #pragma once
-// A viscous sheet of constant volume that spreads under its own weight (Huppert 1982, J. Fluid Mech. 121; Nature 300):
-// dh/dt = (g / (3 nu)) div(h^3 grad h), the law of a Newtonian sheet whose friction is 3 mu u / h and without inertia.
+// A viscous sheet of constant volume that spreads under its own weight (Huppert 1982, J. Fluid Mech. 121; Nature 300).
+// dh/dt = (g / (3 nu)) div(h^3 grad h). It is the law of a Newtonian sheet whose friction is 3 mu u / h and without
+// inertia.
 #include <vector>
 
 #include "checks/verify/problem.h"
@@ -29,11 +30,11 @@ struct RoundSpreading {
     std::vector<Residual> residuals() const;
 };
 
-/// Down an incline from a wall: h = sqrt(nu X / (g sin th t)) behind the front X_N = (9 A^2 g sin th t / (4 nu))^(1/3),
-/// h normal to the bed, X along it. Where the sheet ends, gravity along its own slope rounds the step off over a length
-/// h_N / tan th: in the frame of the front u is uniform, 1 - cot(th) dh/dX = (h_N / h)^2, hence
-/// X_f - X = h_N cot(th) (artanh(h/h_N) - h/h_N). `depth` is the product of both, with X_f = X_N + (ln 2 - 1/2) h_N cot th
-/// so that the volume stays; what it neglects is of the order (h_N cot th / X_N)^2.
+/// Down an incline from a wall: h = sqrt(nu X / (g sin th t)) behind the front X_N = (9 A^2 g sin th t / (4 nu))^(1/3).
+/// h is normal to the bed, X along it. Where the sheet ends, gravity along its own slope rounds the step off over a
+/// length h_N / tan th. In the frame of the front u is uniform, 1 - cot(th) dh/dX = (h_N / h)^2, hence X_f - X = h_N
+/// cot(th) (artanh(h/h_N) - h/h_N). `depth` is the product of both, with X_f = X_N + (ln 2 - 1/2) h_N cot th so that
+/// the volume stays. What it neglects is of the order (h_N cot th / X_N)^2.
 struct InclineSpreading {
     double nu, volume;  ///< [m^2/s], volume per width [m^2]
     double slope;       ///< [rad]

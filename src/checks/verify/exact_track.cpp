@@ -23,7 +23,8 @@ struct Parabola final : Track {
     std::vector<double> joints() const override { return {0.0, length}; }
 };
 
-/// An arc of a circle tangent to the flat at s = 0, between straight pieces of the given tangents before and after.
+/// An arc of a circle tangent to the flat at s = 0, between straight pieces. They have the given tangents before and
+/// after.
 struct Arc final : Track {
     double radius, before, after;  ///< [m]; largest -s and s of the arc [m]
     Arc(double r, double b, double a) : radius(r), before(b), after(a) {}

@@ -1,5 +1,6 @@
 #pragma once
-// A point mass on a curved track in a vertical plane: energy line, and the path with friction by the full normal force.
+// A point mass on a curved track in a vertical plane. It has the energy line, and the path with friction by the full
+// normal force.
 #include <memory>
 #include <vector>
 
@@ -27,8 +28,9 @@ std::shared_ptr<const Track> circle(double radius);
 /// Coulomb friction's normal force: of gravity alone ("inertia"), or with the centripetal part ("full").
 enum class Normal { gravity, full };
 
-/// Where a point stops that is released at rest and slides towards larger s, from
-/// (1 + z'^2) d(v^2)/ds = -2 z' (g + z'' v^2) - 2 mu (g or g + z'' v^2), piece by piece between the joints.
+/// Where a point stops that is released at rest and slides towards larger s. It solves, piece by piece between the
+/// joints,
+/// (1 + z'^2) d(v^2)/ds = -2 z' (g + z'' v^2) - 2 mu (g or g + z'' v^2).
 double stop_of(const Track& track, double mu, double start, Normal normal);
 /// Where it is at t without friction, from (1 + z'^2) s'' = -z' (g + z'' s'^2).
 double place_of(const Track& track, double start, double t);

@@ -11,7 +11,7 @@ struct Lake {
     bool strip = false;    ///< one-dimensional: seven nodes across
 };
 
-// Fois et al. 2024, section 4.1: a smooth bump and a step, under 10 m of water; and an island higher than the water.
+// Fois et al. 2024, section 4.1: a smooth bump and a step, under 10 m of water. Also an island higher than the water.
 Lake lake_z1();
 Lake lake_z2();
 Lake lake_island();
@@ -19,7 +19,7 @@ Lake lake_island();
 /// inflow, which frana does not have.
 Lake lake_bump();
 
-/// Between walls, masses fitted to the level; the time stepping does not know it but in the paper preset.
+/// Between walls, masses fitted to the level; the time stepping does not use it but in the paper preset.
 Scene scene_of(const Lake& lake, const Setup& setup, Placement placement);
 
 }  // namespace frana::verify

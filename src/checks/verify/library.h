@@ -1,5 +1,5 @@
 #pragma once
-// The canon: every verification problem that frana knows.
+// The canon: every verification problem of frana.
 #include <string>
 #include <vector>
 

@@ -1,8 +1,8 @@
 #pragma once
 // What was measured when a dam broke before a box: MARIN's experiment (Kleefsman, Fekken, Veldman, Iwanowski and Buchner
-// 2005, J. Comput. Phys. 206, 363, doi:10.1016/j.jcp.2004.12.007), the second test of SPHERIC (Issa and Violeau 2006).
-// Means over short times of the public records, which have a value each millisecond. Pressures drift by some 80 Pa
-// before the water comes.
+// 2005, J. Comput. Phys. 206, 363, doi:10.1016/j.jcp.2004.12.007). It is the second test of SPHERIC (Issa and Violeau
+// 2006). Means over short times of the public records, which have a value each millisecond. Pressures drift by some 80
+// Pa before the water comes.
 #include <array>
 
 namespace frana::verify::marin {
@@ -14,9 +14,9 @@ constexpr double kBoxSide = 0.2955, kBoxWidth = 0.403;   ///< [m]
 constexpr double kBoxHeight = 0.161;                     ///< [m]
 constexpr std::array<double, 4> kGauges{2.638, 1.488, 0.992, 0.496};  ///< of the level, in the middle of the tank [m]
 
-/// Four sensors one above the other, near the middle of the face that the water meets, stand for a quarter of its height
-/// each. Of their mean: when it passes 300 Pa [s], its integral over 0.25 s from then [Pa s], and its mean from 0.046 to
-/// 0.086 s after it, when all four are wet [Pa].
+/// Four sensors stand one above the other, near the middle of the face that the water meets. Each represents a quarter
+/// of its height. Of their mean: when it passes 300 Pa [s], and its integral over 0.25 s from then [Pa s]. Also its
+/// mean from 0.046 to 0.086 s after it, when all four are wet [Pa].
 constexpr double kArrival = 0.394, kThreshold = 300.0, kImpulse = 1244.0, kImpulseOver = 0.25;
 constexpr double kEarlyFrom = 0.046, kEarlyTo = 0.086, kEarly = 6796.0;
 

@@ -1,6 +1,6 @@
 #pragma once
-// What other open codes reach on the same problems: error and wall time, measured by this project with their
-// released versions on one machine (2 cores, x86-64), quiet, least of three runs where not said otherwise.
+// What other open codes reach on the same problems: error and wall time. This project measured their released versions
+// on one quiet machine (2 cores, x86-64). Times are the least of three runs where not said otherwise.
 #include <string>
 #include <vector>
 

@@ -17,7 +17,7 @@ void jitter(Seeds& seeds, double share) {
     }
 }
 
-/// 1 m deep, as many points as the lattice has at the first places of Roberts' (2018) additive sequence: x and y grow
+/// 1 m deep, as many points as the lattice has, at the first places of Roberts' (2018) additive sequence. x and y grow
 /// by 1/g and 1/g^2 modulo one, g^3 = g + 1. Equal patches.
 void cover_r2(Scene& scene, int per_side) {
     const GridGeometry& grid = scene.bed.geometry;

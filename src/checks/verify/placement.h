@@ -26,7 +26,7 @@ private:
     std::uint64_t state_ = 0;
 };
 
-/// Fills the grid with about per_side^2 points a cell wherever the depth is positive, each with the depth at its own
+/// Fills the grid with about per_side^2 points a cell wherever the depth is positive. Each has the depth at its own
 /// place and the volume depth * patch area. Same arguments, same bits.
 void place(Scene& scene, const Function& depth, Placement placement, int per_side);
 

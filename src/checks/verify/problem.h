@@ -82,8 +82,8 @@ struct Problem {
     bool takes_minutes = false;         ///< runs when it is named only
     bool finest_is_long = false;  ///< twenty seconds or more: `frana verify --coarse` leaves the last grid out, and
                                   ///< the problem where it has no other
-    bool in_3d = false;           ///< of the 3D model: knows no presets
-    bool has_presets = true;      ///< false: of a model on the plane that knows none
+    bool in_3d = false;           ///< of the 3D model: has no presets
+    bool has_presets = true;      ///< false: of a model on the plane that has none
 };
 
 /// The problem's grids; "coarse" those without a last one that takes long: none, where there is no other.

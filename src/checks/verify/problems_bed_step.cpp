@@ -1,5 +1,6 @@
-// A stream runs up a bank that is shorter than the length over which the bed's curvature is taken. Behind the bank it
-// is steady, faster than its waves, and has the energy it came with: u^2/2 + g (h + z) and u h keep their values.
+// A stream runs up a step in the bed. It is shorter than the length over which the bed's curvature is taken. Behind
+// the step it is steady, faster than its waves, and has the energy it came with. u^2/2 + g (h + z) and u h stay as they
+// were.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +13,7 @@ namespace frana::verify {
 namespace {
 
 constexpr double kStepSpeed = 12.0, kStepDepth = 0.5;  ///< of the stream [m/s], [m]
-constexpr double kFoot = 220.0, kStepLength = 300.0;   ///< of the bank; of the track [m]
+constexpr double kFoot = 220.0, kStepLength = 300.0;   ///< of the step; of the track [m]
 constexpr double kStepFirst = 10.0, kLast = 210.0;     ///< ends of the stream at the start [m]
 constexpr double kStepRise = 3.0, kStepEnd = 10.0;     ///< [m], [s]
 using constants::kGravity;
@@ -37,7 +38,7 @@ struct OnTop {
     double speed = 0.0, depth = 0.0;
 };
 
-/// Means over 10 m, 20 to 30 m behind the top of the bank, relative to the exact values.
+/// Means over 10 m, 20 to 30 m behind the top of the step, relative to the exact values.
 OnTop errors(const Frame& frame, double top) {
     const double *h = frame.node("depth")->data, *v = frame.node("velocity")->data;
     OnTop mean;

@@ -1,4 +1,4 @@
-// Waves on a flow that takes up its bed, near a Froude number of 1: what linear theory has, and what the grid makes of it.
+// Waves on a flow that takes up its bed, near a Froude number of 1. Linear theory, and what the grid makes of it.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -18,10 +18,10 @@ constexpr double kWavesFrom = 32.0;  ///< begin of the window, ahead of what com
 constexpr int kWaves = 3;            ///< in the window
 constexpr double kWavesLength = kWavesFrom + kWaves * kWavelength + 14.0;  ///< of the slab on the map [m]
 constexpr double kSmall = 3e-5;                                            ///< height of the wave over the depth [1]
-constexpr double kRough = 3e-6;  ///< of the nodes' bed beside it, over the depth [1]
+constexpr double kRough = 3e-6;  ///< of the nodes' bed next to it, over the depth [1]
 constexpr double kSpare = 2e-3;  ///< share of the stress above the threshold: small waves never bring it to zero
 
-/// A slab at its normal speed on a strip that falls along x, with the fastest wave of theory, and a bed that is rough from
+/// A slab at its normal speed on a strip that falls along x, with the fastest wave of theory. The bed is rough from
 /// node to node.
 Scene slab(const ErodingSheet& sheet, double cell, int per_side) {
     const double cosine = sheet.cosine(), ahead = 40.0;
@@ -77,7 +77,7 @@ double amplitude(const std::vector<double>& heights, Index n) {
     return 2.0 * std::abs(sum) / count;
 }
 
-/// Of all waves of 2 to 4 cells, of 4 to 8, and so on while they are shorter than a third of that of theory [m]. The window
+/// Of all waves of 2 to 4 cells, of 4 to 8, and so on [m]. They are shorter than a third of that of theory. The window
 /// fades at its ends, so that long waves do not leak into short ones.
 std::vector<double> amplitudes_by_length(std::vector<double> heights) {
     const auto count = static_cast<Index>(heights.size());
@@ -93,7 +93,7 @@ std::vector<double> amplitudes_by_length(std::vector<double> heights) {
     return bands;
 }
 
-/// Adds by how much the wave of eight depths grows otherwise than theory has it, and the rates of short waves.
+/// Adds the difference of the growth of the wave of eight depths from theory, and the rates of short waves.
 void add_waves(const ErodingSheet& sheet, const std::string& name, const Setup& setup, Measurement& m) {
     Trial trial(slab(sheet, kWavelength / static_cast<double>(setup.cells), setup.per_side), setup);
     std::vector<double> wave, time = {0.25 * kWavesEnd, 0.5 * kWavesEnd, kWavesEnd};

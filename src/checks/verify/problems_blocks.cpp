@@ -1,4 +1,4 @@
-// Blocks and slabs on planes at any angle to the grid: travel, terminal speed, and what must not move at all.
+// Blocks and slabs on planes at any angle to the grid: travel, terminal speed, and what must not move.
 #include <algorithm>
 #include <cmath>
 
@@ -20,7 +20,8 @@ Function plane(double slope_deg) {
     return [t = std::tan(slope_deg * kDegree)](double s, double) { return -t * s; };
 }
 
-/// A thin blob on planes of 10 to 60 degrees, 5 s; the worst of 16 runs, the figures of a run of the last of them.
+/// A thin blob on planes of 10 to 60 degrees, 5 s. It gives the worst of 16 runs, and the figures of a run of the last
+/// of them.
 Measurement run_block_coulomb(const Setup& setup) {
     constexpr double kMu = 0.1, kEnd = 5.0;
     double travel = 0.0, drift = 0.0;
@@ -45,8 +46,8 @@ Measurement run_block_coulomb(const Setup& setup) {
     return m;
 }
 
-/// Means over the points that started within two cells of the centre (0, 0) of a disc so wide that they do not feel
-/// its rim: speed along the bed [m/s], way along and across the slide [m].
+/// Means over the points that started within two cells of the centre (0, 0) of a disc. It is so wide that they do not
+/// feel its edge. Speed along the bed [m/s], way along and across the slide [m].
 struct Middle {
     double speed, along, across;
 };
@@ -108,7 +109,7 @@ struct Stand {
     Measurement measurement;
 };
 
-/// The layer's rim, a cliff 200 m from the centre, does move, hence the 60 m.
+/// The layer's edge, a cliff 200 m from the centre, does move, hence the 60 m.
 Stand stand(const Setup& setup, const Load& load, double turn) {
     Slide slide{cell_of(setup), turn};
     slide.radius = 200.0 / slide.cell;

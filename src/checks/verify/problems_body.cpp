@@ -70,9 +70,9 @@ Measurement run_bar(const Setup& setup) {
     return m;
 }
 
-/// A bar that stands on a floor that holds it, when gravity is switched on: it swings about its rest, all modes with
-/// whole parts of 4 L / c, so that over this time its stress is rho g (L - x) in the mean. Two points of a cell may differ
-/// without any node feeling it: those nearest to the floor keep such a difference, the worst.
+/// A bar stands on a floor that holds it, when gravity is switched on. It swings about its rest, all modes with whole
+/// parts of 4 L / c. So over this time its stress is rho g (L - x) in the mean. Two points of a cell may differ without
+/// any node feeling it. Those nearest to the floor preserve such a difference, the worst.
 Measurement run_elastic_column(const Setup& setup) {
     const Bar bar;
     const double g = 1e-3 * bar.young / (bar.density * bar.length), weight = bar.density * g * bar.length;  // [Pa]
@@ -125,8 +125,8 @@ Measurement run_disc(const Setup& setup) {
     return m;
 }
 
-/// A bar and its wall lie in the grid so many degrees turned. stress_error: of the push on the wall, less rho c v, until
-/// the wave is back; rebound: the speed afterwards over that before.
+/// A bar and its wall lie in the grid so many degrees turned. stress_error: of the force on the wall, less rho c v,
+/// until the wave is back. rebound: the speed afterwards over that before.
 struct BarImpact {
     double stress_error, rebound;
     Measurement run;
@@ -167,14 +167,13 @@ Measurement run_bar_impact(const Setup& setup) {
     return m;
 }
 
-/// A block of elastic material that slides down a plane which is turned in the grid. It rocks on its elastic
-/// base, and what pushes it more brakes it more: v_along + mu v_across = v_0 + g (sin - mu cos) t at any
-/// time.
+/// A block of elastic material that slides down a plane which is turned in the grid. It rocks on its elastic base, and
+/// more normal force brakes it more. v_along + mu v_across = v_0 + g (sin - mu cos) t at any time.
 struct Slide3 {
     double speed_error;     ///< of v_along + mu v_across, over what is gained
-    double weight_error;    ///< of the plane's push across, over the weight
+    double weight_error;    ///< of the plane's normal force, over the weight
     double sunk;            ///< of the centre, across the plane [cells]
-    double friction_error;  ///< of friction's work, over the push times the way
+    double friction_error;  ///< of friction's work, over the normal force times the way
     double numerical_loss;  ///< over the energy turned over
     Measurement run;
 };
@@ -195,7 +194,8 @@ Slide3 slide(const Setup& setup, double mu) {
     const Vec3 start = flow.status().centre;
     const double height = flow.status().potential;
     Slide3 result;
-    // Friction takes mu times the push on the way in a step; the way of the centre, since the sole's is nearly that.
+    // Friction takes mu times the normal force on the way in a step. It is the way of the centre, since the sole's is
+    // nearly that.
     double work = 0.0, impulse_before = 0.0, before = kStart;
     result.run = run_body(flow, kEnd, [&](const Mpm3d& moved) {
         const double wall_impulse = moved.body().impulse[0].dot(across);

@@ -14,8 +14,8 @@ constexpr double kBoreGravity = 10.0, kBoreDensity = 1000.0, kBoreDepth = 1.0;  
 constexpr double kBoreWidthCells = 3.0;                                         // of a slice
 constexpr double kBoreFrom = 0.3;  // of the record [s]: before, the first contact rings with the speed of sound
 
-/// A stream of depth h_1 and speed u_1 = Fr sqrt(g h_1) against a wall, without friction: a bore of depth h_2
-/// moves away from the wall at U, and the wall carries g rho h_2^2 / 2. Jump of mass and momentum (Stoker 1957).
+/// A stream of depth h_1 and speed u_1 = Fr sqrt(g h_1) against a wall, without friction. A bore of depth h_2 moves
+/// away from the wall at U, and the wall carries g rho h_2^2 / 2. Jump of mass and momentum (Stoker 1957).
 struct Bore {
     double froude;
 
@@ -34,8 +34,8 @@ struct Bore {
     double retreat() const { return speed() * kBoreDepth / (depth() - kBoreDepth); }  ///< U [m/s]
     /// Force of the bore on the wall over rho u_1^2 h_1.
     double force() const { return 0.5 * kBoreGravity * depth() * depth() / (speed() * speed() * kBoreDepth); }
-    /// Of a stream whose end the wall does not feel before `end`: the end collapses, which runs ahead at u_1
-    /// + sqrt(g h_1), meets the bore and goes on through it at sqrt(g h_2).
+    /// Of a stream whose end the wall does not feel before `end`. The end collapses, which runs ahead at u_1 + sqrt(g
+    /// h_1), meets the bore and goes on through it at sqrt(g h_2).
     double length(double end) const {
         const double behind = std::sqrt(kBoreGravity * depth());
         return end * (speed() + wave() + retreat()) / (1.0 + retreat() / behind);
@@ -48,8 +48,8 @@ SolidScene stream(const Bore& bore, double end, const Setup& setup) {
     const double cell = kBoreDepth / static_cast<double>(setup.cells), width = kBoreWidthCells * cell;
     const double sound_speed = 10.0 * std::max(bore.speed(), bore.wave());
     const double bulk = kBoreDensity * sound_speed * sound_speed, length = bore.length(end);
-    // The end falls back at 2 sqrt(g h_1) through the stream; jets rise as high as their speed carries them,
-    // and splash.
+    // The end falls back at 2 sqrt(g h_1) through the stream. Jets rise as high as their speed carries them, and
+    // splash.
     const double room = length + std::max(0.0, 2.0 * bore.wave() - bore.speed()) * end;
     const double top = 3.0 * (kBoreDepth + 0.5 * bore.speed() * bore.speed() / kBoreGravity);
     SolidScene s;

@@ -31,8 +31,8 @@ Scene scene_of(const Bowl& bowl, const Setup& setup) {
 
 double energy_of(const Status& status) { return status.kinetic + status.potential; }
 
-/// Largest difference between depths that a symmetry of the square carries into one another, over the largest depth:
-/// mirrors of x and y, and the exchange of x and y.
+/// Largest difference between depths that a symmetry of the square carries into one another, over the largest depth.
+/// The symmetries are mirrors of x and y, and the exchange of x and y.
 struct Asymmetry {
     double mirror = 0.0, exchange = 0.0;
 };

@@ -1,4 +1,4 @@
-// Masses with strength in space: granular columns that collapse, a slump that its yield stress stops.
+// 3D masses with strength: granular columns that collapse, a slump that its yield stress stops.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -41,8 +41,8 @@ solid::Elastic stiff_enough(double density, double height) {
     return solid::Elastic::of(modulus * (1.0 + kPoisson) * (1.0 - 2.0 * kPoisson) / (1.0 - kPoisson), kPoisson);
 }
 
-/// Sand without cohesion or dilatancy in half of a column, on a floor as rough as itself, until it rests but for what
-/// creeps.
+/// Sand without cohesion or dilatancy in half of a column, on a floor as rough as itself. It runs until it rests but
+/// for what creeps.
 struct Heap {
     double length, height, density, phi;  ///< phi: friction angle [rad]
     solid::Elastic elastic;
@@ -79,7 +79,7 @@ Measurement run_stiff_column(const Setup& setup, double stiffness, double& runou
     return m;
 }
 
-/// Steps alone damp nothing: sand that is four times as stiff takes twice as many of them, and runs out as far.
+/// Steps alone damp nothing. Sand that is four times as stiff takes twice as many of them, and runs out as far.
 Measurement run_column_steps(const Setup& setup) {
     double soft = 0.0, stiff = 0.0;
     Measurement m = run_stiff_column(setup, 1.0, soft);
@@ -89,8 +89,8 @@ Measurement run_column_steps(const Setup& setup) {
     return m;
 }
 
-/// Plane columns of sand, height over half-length 0.5, 1, 2, 3; runout over length by Lube et al. (2005): 1.2
-/// a below 2.3, 1.9 a^(2/3) above. Cells are counted along the shorter side.
+/// Plane columns of sand, height over half-length 0.5, 1, 2, 3. Runout over length by Lube et al. (2005): 1.2 a below
+/// 2.3, 1.9 a^(2/3) above. Cells are counted along the shorter side.
 Measurement run_column_collapse(const Setup& setup) {
     constexpr double kLength = 0.1, kDensity = 1600.0, kPhi = 31.0 * kDegree;
     Measurement m;
@@ -154,10 +154,10 @@ double mean_depth(const Mpm3d& flow, double low, double high, double cell) {
     return volume / ((high - low) * kColumnWidthCells * cell);
 }
 
-/// Plane columns of grains that were simulated one by one (contact dynamics: Staron and Hinch 2005; Lagree, Staron and
-/// Popinet 2011, J. Fluid Mech. 686, 378; as published with the solvers Gerris and Basilisk): half the final length,
-/// and mean depths of tenths of it, of both halves, over the first height. Their law is mu(I) from 0.32 on; 0.4 is what
-/// is taken for it here (cases/column_collapse). Of the tallest column the grains fill 4 % more than it had.
+/// Plane columns of grains that were simulated one by one. Contact dynamics: Staron and Hinch 2005; Lagree, Staron and
+/// Popinet 2011, J. Fluid Mech. 686, 378; as published with the solvers Gerris and Basilisk. Half the final length, and
+/// mean depths of tenths of it, of both halves, over the first height. Their law is mu(I) from 0.32 on; 0.4 is what is
+/// taken for it here (cases/column_collapse). Of the tallest column the grains fill 4 % more than it had.
 struct Grains {
     const char* name;
     double aspect, half_length, depth[10];
@@ -194,8 +194,8 @@ Measurement run_column_grains(const Setup& setup) {
     return m;
 }
 
-/// A block of yield-stress material, 2 m long and 1 m high, on a floor that holds it. It is whole: half of it against
-/// a wall is another problem, as walls never pull and what is drawn away from one leaves it.
+/// A block of yield-stress material, 2 m long and 1 m high, on a floor that holds it. It is whole. Half of it against a
+/// wall is another problem. Walls have no tension, and what is drawn away from one leaves it.
 struct Slump {
     static constexpr double kYield = 1000.0, kDensity = 1000.0, kMiddle = 3.5;
     static constexpr double kFirst = 1.0;  ///< half its length [m]
@@ -240,8 +240,8 @@ struct Slump {
     double speed() const { return std::sqrt(2.0 * flow.status().kinetic / flow.status().mass); }
 };
 
-/// It stops where the floor's yield stress carries the slope of its surface, h^2 = 2 tau_Y (x_f - x) / (rho g), x_f =
-/// (9 rho g V^2 / (8 tau_Y))^(1/3), V of half of it (Liu and Mei 1989, J. Fluid Mech. 207, 505).
+/// It stops where the floor's yield stress carries the slope of its surface, h^2 = 2 tau_Y (x_f - x) / (rho g). There
+/// x_f = (9 rho g V^2 / (8 tau_Y))^(1/3), V of half of it (Liu and Mei 1989, J. Fluid Mech. 207, 505).
 Measurement run_slump(const Setup& setup) {
     Slump slump(setup, 10.0);
     Measurement m = run_body(slump.flow, 3.0);
@@ -259,10 +259,10 @@ Measurement run_slump(const Setup& setup) {
     return m;
 }
 
-/// The same to the next order of the slope: material that has yielded throughout pushes outwards less, by the integral
-/// of twice sqrt(tau_Y^2 - tau^2), tau linear in depth: (h - c) dh/dx = -b with b = tau_Y / (rho g), c = pi b / 2 (as
-/// Dubash et al. 2009, J. Non-Newtonian Fluid Mech. 158, 91). From h = 0 at x_0: x = x_0 - (h^2 / 2 - c h) / b, which
-/// reaches furthest at h = c.
+/// The same to the next order of the slope. Material that has yielded throughout has less outward pressure, by the
+/// integral of twice sqrt(tau_Y^2 - tau^2), tau linear in depth. (h - c) dh/dx = -b with b = tau_Y / (rho g), c = pi b
+/// / 2 (as Dubash et al. 2009, J. Non-Newtonian Fluid Mech. 158, 91). From h = 0 at x_0: x = x_0 - (h^2 / 2 - c h) / b,
+/// which reaches furthest at h = c.
 struct YieldedHeap {
     double b, c = 0.5 * constants::kPi * b, x0 = 0.0;
     double depth(double x) const { return c + std::sqrt(std::max(0.0, c * c + 2.0 * b * (x0 - x))); }
@@ -281,7 +281,8 @@ struct YieldedHeap {
     }
 };
 
-/// Viscous enough that it hardly overshoots: its shape is that of the theory but for the front, which is no thin layer.
+/// It is so viscous that it hardly overshoots. Its shape is that of the theory but for the front, which is no thin
+/// layer.
 Measurement run_slow_slump(const Setup& setup) {
     constexpr double kShown = 1.5;  // of the surface [m]
     Slump slump(setup, 300.0);

@@ -1,5 +1,5 @@
-// The way from columns into 3D points, on the field of Fois, de Falco, Formaggia (2025), section 4.3:
-// h = 10 - sin(2x) cos(y), u = 2.001 m/s on [0, 5]^2.
+// The conversion from columns to 3D points. The field is that of Fois, de Falco, Formaggia (2025), section 4.3: h = 10 -
+// sin(2x) cos(y), u = 2.001 m/s on [0, 5]^2.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -22,7 +22,7 @@ double volume_over(double x0, double x1, double y0, double y1) {
            0.5 * (std::cos(2.0 * x0) - std::cos(2.0 * x1)) * (std::sin(y1) - std::sin(y0));
 }
 
-/// How the mass came onto the columns: evenly, as the paper's generation does it, or each the mass over its own square.
+/// How the mass came onto the columns. Evenly, as the paper's generation does it, or each the mass over its own square.
 enum class Sharing { even, own };
 
 /// `cells` x `cells` columns in the middles of squares.
@@ -47,7 +47,8 @@ struct Field {
 
 double order_between(double coarse, double fine, double ratio) { return std::log(coarse / fine) / std::log(ratio); }
 
-/// Points of the field, 1 m apart so that they fit in memory, with a parabolic profile: what conversion must keep.
+/// Points of the field, 1 m apart so that they fit in memory, with a parabolic profile. Checks what conversion must
+/// conserve.
 Conservation keep(const Field& field) {
     FlowColumns c;
     for (Index p = 0; p < field.columns(); ++p) {

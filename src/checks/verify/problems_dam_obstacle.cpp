@@ -1,4 +1,4 @@
-// A dam that breaks before a box, beside what was measured; and the same box in water at rest.
+// A dam that breaks before a box, compared with what was measured; and the same box in water at rest.
 #include <algorithm>
 #include <cmath>
 
@@ -19,7 +19,7 @@ constexpr double kHeight = marin::kBoxHeight;
 /// How the box on the floor is given: by its outline and height, or as a closed mesh.
 enum class BoxAs { outline, mesh };
 
-/// A box of water that stands in a tank from 0 to `room`, without friction, and a solid box on its floor.
+/// A box of water that stands in a tank from 0 to `room`, without friction. A solid box is on its floor.
 struct BoxInTank {
     double cell;
     int per_side;
@@ -195,7 +195,7 @@ double noise_of(const Mpm3d& flow, double depth) {
     return std::sqrt(sum / static_cast<double>(count)) / (kWaterDensity * kGravity * depth);
 }
 
-/// Water at rest twice as deep as a box in it, a box's height all around it: forces on its faces and the floor after a
+/// Water at rest twice as deep as a box in it, a box's height all around it. Forces on its faces and the floor after a
 /// second. `cells` a box's height.
 Measurement box_at_rest(const Setup& setup, BoxAs given_as) {
     constexpr double kEnd = 1.0;

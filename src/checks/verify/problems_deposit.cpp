@@ -1,5 +1,5 @@
-// Slumps of a Bingham material that come to rest where the yield stress holds them: on flat ground, round an axis and on
-// an incline; and deposits that start from the exact answer and must stay.
+// Slumps of a Bingham material that come to rest where the yield stress holds them. They are on flat ground, round an
+// axis and on an incline. Also deposits that start from the exact answer and must stay.
 #include <algorithm>
 #include <cmath>
 
@@ -27,7 +27,7 @@ Scene strip(double length, double cell, double fall) {
     return scene_on(nx, 5, cell, [&](double x, double) { return -fall * x; });
 }
 
-/// How far the contour of `level` stands from its exact place, in cells, along a line of nodes from node `start` on.
+/// How far the contour of `level` stands from its exact place, in cells. Along a line of nodes from node `start` on.
 double contour_cells(const Frame& frame, Index start, Index step, double step_cells, double level, double exact) {
     const double* h = frame.node("depth")->data;
     const Index count = frame.grid.size();

@@ -11,8 +11,8 @@
 namespace frana::verify {
 namespace {
 
-/// So long that what its middle comes over has had the slab on it from the start: the ground there rises evenly, and a plane
-/// stays one.
+/// So long that what its middle comes over has had the slab on it from the start. The ground there rises evenly, and a
+/// plane stays one.
 Measurement run_slab(const Setup& setup) {
     constexpr double kSlopeDeg = 30.0, kEnd = 20.0, kLength = 850.0, kRoom = 200.0;
     const DetrainedSlab slab;

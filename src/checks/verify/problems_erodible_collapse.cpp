@@ -1,5 +1,5 @@
-// A column of dry grains collapses on a slope, over rock and over a thin loose layer: by how much the layer lengthens the
-// runout (after Mangeney et al. 2010, J. Geophys. Res. 115, F03040).
+// A column of dry grains collapses on a slope, over rock and over a thin loose layer. By how much does the layer
+// lengthen the runout (after Mangeney et al. 2010, J. Geophys. Res. 115, F03040)?
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -30,7 +30,7 @@ void add_bed(Scene& scene, ErosionLaw law, double kappa, double depth) {
 /// What is missing of the flow, of what left and of the bed, over what there was of them.
 double balance_error(const Status& first, const Status& now) { return std::abs(budget(first, now).mass_error); }
 
-/// A layer 300 m long on a strip that falls along x, its middle free of what comes in from its ends.
+/// A layer 300 m long on a strip that falls along x. Its middle is free of what comes in from its ends.
 struct SlabRun {
     ErodingSlab slab;
     ErosionLaw law;
@@ -118,7 +118,7 @@ double spline_average(const Function& f, double x, double cell) {
     return sum * 3.0 / kParts;
 }
 
-/// A block so thin that its pressure has nothing to push, so that it stays one.
+/// A block so thin that its pressure has no effect, so that it stays one.
 Measurement run_trench(const Setup& setup) {
     Trench trench;
     trench.thickness = 1e-10;

@@ -23,7 +23,7 @@ Uniform uniform(const BedLaw& law, double discharge) {
     return {flow.thickness / kCosine, flow.speed * kCosine};
 }
 
-/// A strip of six cells between walls, which falls along x and ends at an exit; an inflow over all of its width.
+/// A strip of six cells between walls, which falls along x and ends at an exit. An inflow is over all of its width.
 struct Channel {
     double cell, length, line;  ///< [m]
     double width() const { return 6.0 * cell; }
@@ -93,7 +93,7 @@ Measurement run_volume(const Setup& setup) {
     return m;
 }
 
-/// Depth and speed behind the front of an inflow of 4 m2/s onto the dry slope, and where the front is.
+/// Depth and speed behind the front of an inflow of 4 m2/s onto the dry slope. Also where the front is.
 struct BehindFront {
     double depth_error = 0.0, speed_error = 0.0;  ///< largest of their means over ten metres each, relative
     double front_error = 0.0;                     ///< of its way [1]
@@ -163,7 +163,7 @@ std::vector<Residual> normal_residuals() {
             {"0.697908 m by Voellmy's law", std::abs(voellmy - 0.697908), 5e-7}};
 }
 
-/// A triangle from 4 to 8 m2/s and back on uniform flow: the largest discharge goes with the celerity of 8 m2/s, 3/2 u.
+/// A triangle from 4 to 8 m2/s and back on uniform flow. The largest discharge goes with the celerity of 8 m2/s, 3/2 u.
 Measurement run_wave(const Setup& setup) {
     constexpr double kBase = 4.0, kPeak = 8.0, kStart = 20.0, kRise = 60.0, kLine = 20.0, kAway = 1000.0, kEnd = 260.0;
     const BedLaw law = bed::Voellmy{0.08, 400.0};

@@ -1,5 +1,5 @@
-// Lakes at rest: nothing may move, on any bed, wherever the points stand, with no level given to the time stepping
-// (the level only fits the initial masses). The exact answer is the level itself: h + z constant, v = 0.
+// Lakes at rest: nothing may move, on any bed, wherever the points stand. No level is given to the time stepping (the
+// level only fits the initial masses). The exact answer is the level itself: h + z constant, v = 0.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@
 namespace frana::verify {
 namespace {
 
-/// Largest |h + z - level| over the nodes whose 5 x 5 neighbours are all wet [m]; nearer to the shore a node averages
+/// Largest |h + z - level| over the nodes whose 5 x 5 neighbours are all wet [m]. Nearer to the shore a node averages
 /// over partly dry ground and stands higher.
 double surface_error(const Frame& frame, double level) {
     const Index nx = frame.grid.nx, ny = frame.grid.ny;
@@ -59,11 +59,11 @@ void add_lake(Measurement& m, Unrest& worst, const Lake& lake, const Setup& setu
           now.speed, "m/s");
 }
 
-/// All placements on steep and shallow terrain for 1 s, and, where asked, the most irregular one for a minute.
+/// All placements on steep and shallow terrain for 1 s, and, if `minute`, the most irregular one for a minute.
 Measurement rest(const Lake& lake, const Setup& setup, bool minute) {
     Measurement m;
     Unrest worst;
-    const bool paper = setup.preset == "paper";  // knows shallow terrain only
+    const bool paper = setup.preset == "paper";  // has shallow terrain only
     for (const TerrainModel terrain : {TerrainModel::steep, TerrainModel::shallow}) {
         if (paper && terrain == TerrainModel::steep) continue;
         for (const Placement placement : kPlacements) add_lake(m, worst, lake, setup, placement, terrain, 1.0);
@@ -76,8 +76,8 @@ Measurement rest(const Lake& lake, const Setup& setup, bool minute) {
     return m;
 }
 
-/// The island's lake with ripples of 1e-8 m/s, from points at random places: nothing feeds them, and at the start all
-/// their energy is motion, so that the kinetic energy may never be larger than then.
+/// The island's lake with ripples of 1e-8 m/s, from points at random places. Nothing feeds them, and at the start all
+/// their energy is motion. So the kinetic energy may never be larger than then.
 Measurement ripple(const Setup& setup) {
     constexpr double speed = 1e-8;
     Scene scene = scene_of(lake_island(), setup, Placement::full_jitter);

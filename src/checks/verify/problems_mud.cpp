@@ -9,7 +9,7 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kMudMiddle = 1.0;  ///< half of what is looked at [m]
+constexpr double kMudMiddle = 1.0;  ///< half of what is measured [m]
 
 /// A sheet 1 m thick of water's density on a floor that holds it, 45 degrees steep, from rest.
 struct Sheet {
@@ -43,8 +43,8 @@ double viscous_speed(double z) {
     return Sheet::kDensity * Sheet::kGravity * std::sqrt(0.5) / kViscosity * (z - 0.5 * z * z);
 }
 
-/// How far points' speeds in the middle of the sheet are off, over the speed, after eight of the times in which shear
-/// crosses it.
+/// How far points' speeds in the middle of the sheet are off, over the speed. It is after eight of the times in which
+/// shear crosses it.
 double viscous_error(const Setup& setup, double floor, Measurement& m) {
     Sheet sheet;
     sheet.sound_speed = 20.0, sheet.floor = floor;
@@ -71,9 +71,9 @@ Measurement run_viscous_sheet(const Setup& setup) {
     return m;
 }
 
-/// A sheet of mud. Depth below the surface gives the shear stress, rho g sin (H - z): where
-/// that is above the yield stress, below z_y, the sheet shears; above it moves as a plug. In its middle, until the
-/// ends are felt, the speed goes to (Huang and Garcia 1998, J. Fluid Mech. 374, 305, without inertia)
+/// A sheet of mud. Depth below the surface gives the shear stress, rho g sin (H - z). Where that is above the yield
+/// stress, below z_y, the sheet shears. Above it moves as a plug. In its middle, until the ends are felt, the speed
+/// goes to (Huang and Garcia 1998, J. Fluid Mech. 374, 305, without inertia)
 ///   u = n / (n + 1) (rho g sin / K)^(1/n) (z_y^(1 + 1/n) - (z_y - z)+^(1 + 1/n)).
 struct Mud {
     double thickness = 1.0, density = Sheet::kDensity;
@@ -97,7 +97,7 @@ struct Mud {
 };
 
 /// From rest, for eight of the times in which shear crosses the sheet. What the ends do comes along the plug, as the
-/// plug is stiff: a sheet half as long is pulled on in its middle by 4 % of its weight, and its plug 4 % faster.
+/// plug is stiff. In the middle of a sheet half as long, they add 4 % of its weight. Its plug is 4 % faster.
 Measurement run_mud_sheet(const Setup& setup) {
     const Mud mud;
     const double cell = mud.thickness / static_cast<double>(setup.cells);
@@ -146,8 +146,8 @@ std::vector<Problem> mud_problems() {
                 run_mud_sheet};
     mud.finest_is_long = true;
     mud.order_of = "profile_error";
-    // Two errors of opposite signs: points are pressed by up to 0.7 %, which raises the stress as much, and the law
-    // takes it to the power of two; and each step takes a little from what shears.
+    // Two errors of opposite signs. Points are pressed by up to 0.7 %, which raises the stress as much. The law takes
+    // it to the power of two. And each step takes a little from what shears.
     const std::string own = "a fifth above its own figure; 0.05 is the aim";
     mud.gates = {{4, "profile_error", 0.039, own},
                  {8, "profile_error", 0.023, own},

@@ -1,5 +1,5 @@
-// The cases of Fois et al. 2024: the lake of known level as the authors ran it (section 4.1, table 1), and mud that
-// runs onto a bump (section 4.2). The second has no exact answer: identities and symmetry must hold.
+// The cases of Fois et al. 2024. The first is the lake of known level as the authors ran it (section 4.1, table 1). The
+// second is mud that runs onto a bump (section 4.2). The second has no exact answer: identities and symmetry must hold.
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +15,7 @@ struct Table1 {
     double l1_h = 0.0, max_h = 0.0, l1_hu = 0.0, max_hu = 0.0;
 };
 
-/// Bed at a place between four nodes, bilinear as the paper's points see it [m].
+/// Bed at a place between four nodes, bilinear as for the paper's points [m].
 double bed_at(const Raster& bed, double x, double y) {
     const GridGeometry& g = bed.geometry;
     const double u = (x - g.x0) / g.cell, v = (y - g.y0) / g.cell;
@@ -40,7 +40,7 @@ void add_errors(const Trial& trial, const Frame& frame, double level, Table1& ta
              std::max(table.max_hu, here.max_hu)};
 }
 
-/// Bilinear shapes, PIC, depth by the differential equation, level known; whatever preset is asked for.
+/// Bilinear shapes, PIC, depth by the differential equation, level known; whatever the preset.
 Measurement run_table(Setup setup) {
     setup.preset = "paper";
     Measurement m;

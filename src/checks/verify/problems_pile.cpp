@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kPileLength = 60.0, kPileMiddle = 30.0, kPileHeight = 4.0, kPileEnd = 10.0;
 
-/// On a plane, fall line turned against the grid; a cone, or a paraboloid as steep at its rim.
+/// On a plane, fall line turned against the grid; a cone, or a paraboloid as steep at its edge.
 struct Pile {
-    double slope, flank, mu;  ///< of the bed; of the depth at the rim; tan(phi)
+    double slope, flank, mu;  ///< of the bed; of the depth at the edge; tan(phi)
     double turn;              ///< [rad]
     bool cone;
 
@@ -23,7 +23,7 @@ struct Pile {
         return 100 - slope * (std::cos(turn) * (x - kPileMiddle) + std::sin(turn) * (y - kPileMiddle));
     }
     double depth(double x, double y) const {
-        const double r = std::hypot(x - kPileMiddle, y - kPileMiddle) * flank / kPileHeight;  // 1 at the rim
+        const double r = std::hypot(x - kPileMiddle, y - kPileMiddle) * flank / kPileHeight;  // 1 at the edge
         return kPileHeight * (cone ? 1 - r : 0.5 * (1 - r * r));
     }
 };
@@ -37,8 +37,8 @@ std::vector<Pile> piles() {
     return all;
 }
 
-/// Drive over holding friction where the pile is steepest on the way down, both per unit mass and gravity: the
-/// surface's slope e = B + grad h, eased on steep ground by 1 + B.e, against mu cos(th) / kappa with kappa along e.
+/// Drive over holding friction where the pile is steepest on the way down, both per unit mass and gravity. The
+/// surface's slope is e = B + grad h, eased on steep ground by 1 + B.e, against mu cos(th) / kappa with kappa along e.
 double drive_over_friction(const Pile& pile, bool steep) {
     const double e = pile.slope + pile.flank, b = pile.slope;  // all along the fall line
     if (!steep) return e / pile.mu;

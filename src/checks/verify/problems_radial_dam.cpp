@@ -1,4 +1,4 @@
-// A round column of water of 1 m is let go on dry ground or in water of 0.2 m (scheme study, section 4).
+// A round column of water of 1 m is let go (scheme study, section 4). It is on dry ground or in water of 0.2 m.
 #include <cmath>
 
 #include "base/constants.h"
@@ -17,7 +17,8 @@ const RadialDam& reference(double outer) {
     return outer > 0.0 ? wet : dry;
 }
 
-/// Radius of a disc as large as what lies deeper than `level` [m]: a quarter of it is seen, walls cut nodes in half.
+/// Radius of a disc as large as what lies deeper than `level` [m]. A quarter of it is seen, and walls cut nodes in
+/// half.
 double mean_radius(const Frame& frame, double level) {
     const double* h = frame.node("depth")->data;
     double nodes = 0.0;

@@ -1,5 +1,5 @@
-// Uniform flow down a plane, straight and across the grid. The slab is finite, long enough that what starts at its
-// ends has not come to the middle when the flow is steady there; only the middle is measured.
+// Uniform flow down a plane, straight and across the grid. The slab is finite. It is so long that the flow in the
+// middle is steady before what starts at its ends comes there. Only the middle is measured.
 #include <algorithm>
 #include <cmath>
 

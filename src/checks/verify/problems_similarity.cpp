@@ -38,7 +38,7 @@ Exact steep_on_map(double t) {
             [pile](double x, double y) { return pile->at(x, y).v; }};
 }
 
-/// The window holds the pile at the start and at the end, whatever the angle; the pile starts around (0, 0).
+/// The window holds the pile at the start and at the end, whatever the angle. The pile starts around (0, 0).
 Trial turned_trial(const Setup& setup, double turn, TerrainModel terrain) {
     const double cell = kSimilarityReach / static_cast<double>(setup.cells), c = std::cos(turn), s = std::sin(turn);
     const double low = -std::ceil(96 / cell) * cell;

@@ -23,7 +23,7 @@ Scene strip(double cell, double x0, double x1, double slope, double mu) {
 }
 
 /// Shallow form, tan 0.4 / mu 0.2, 1 m behind the dam at x = 0 to the wall at x = -50 m; 6 s. The void that opens at
-/// that wall is felt up to -50 + c t + a t^2/2 = 4.1 m; the front stands at 72.9 m.
+/// that wall is felt up to -50 + c t + a t^2/2 = 4.1 m. The front stands at 72.9 m.
 Measurement run_coulomb_slope(const Setup& setup) {
     constexpr double kSlope = 0.4, kMu = 0.2, kEnd = 6.0;
     const SlopeDam dam{1.0, 9.81, 9.81 * (kSlope - kMu)};
@@ -90,7 +90,7 @@ Measurement run_slope_dam(const Setup& setup) {
     return m;
 }
 
-/// Shallow form, tan 0.6 / mu 0.3: the cap moves 147 m in 10 s and grows from 40 m to 132 m.
+/// Shallow form, tan 0.6 / mu 0.3. The cap moves 147 m in 10 s and grows from 40 m to 132 m.
 const SlidingCap kCap{2.0, 20.0, 9.81, 9.81 * (0.6 - 0.3)};
 
 Measurement run_sliding_cap(const Setup& setup) {

@@ -1,5 +1,5 @@
-// Viscous sheets of constant volume (Huppert 1982) on flat ground, round an axis and down an incline: from the exact
-// shape at one time to a later one. Inertia against viscosity is h^2 / (15 nu t): a few 1e-4 here.
+// Viscous sheets of constant volume (Huppert 1982) on flat ground, round an axis and down an incline. They go from the
+// exact shape at one time to a later one. Inertia against viscosity is h^2 / (15 nu t): a few 1e-4 here.
 #include <cmath>
 
 #include "base/constants.h"
@@ -81,7 +81,8 @@ Measurement run_round(const Setup& setup) {
 
 const InclineSpreading kIncline{0.1, 1.0, 20 * kDegree};
 
-/// What the map sees of a thickness h at X along the bed: depth h / cos at x = X cos + h sin, the surface's place.
+/// What a thickness h at X along the bed is on the map. It is the depth h / cos at x = X cos + h sin, the surface's
+/// place.
 double map_depth(double x, double t) {
     const double c = std::cos(kIncline.slope), s = std::sin(kIncline.slope);
     double h = 0.0;

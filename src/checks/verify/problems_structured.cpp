@@ -1,5 +1,5 @@
-// Structured solids against closed forms: a block that spins, a bar that strikes a wall, blocks that slide,
-// stop and stand, grains behind a dam.
+// Structured solids against closed forms. These are a block that spins, a bar that strikes a wall, and blocks that
+// slide, stop and stand. Also grains behind a dam.
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +14,7 @@ namespace {
 using constants::kDegree, constants::kGravity;
 constexpr double kUnbreakable = 1e12;  // cohesion [Pa]
 
-/// Nothing pulls: motion in the plane alone.
+/// No gravity: motion in the plane alone.
 GroundGravity weightless(double, double) { return {0.0, 0.0, 0.0}; }
 
 double larger(double a, double b) { return std::abs(a) > std::abs(b) ? a : b; }
@@ -57,8 +57,8 @@ Measurement run_spin(const Setup& setup) {
     return m;
 }
 
-/// A bar 1 m long between smooth walls strikes a wall at x = 0 with a thousandth of its wave speed c: it is
-/// pushed by rho c v over 2 L / c, and leaves as fast as it came.
+/// Between smooth walls a bar 1 m long strikes a wall at x = 0, at c / 1000, c its wave speed. The force rho c v
+/// acts on it over 2 L / c, and it leaves as fast as it came.
 Measurement run_structured_bar(const Setup& setup) {
     const double cell = 1.0 / static_cast<double>(setup.cells), side = 4.0 * cell;
     StructuredScene s;
@@ -92,8 +92,7 @@ Measurement run_structured_bar(const Setup& setup) {
 struct StructuredSlide {
     double slope_deg, bed_deg, turn_deg, speed, end;
 
-    /// Means of the block: way and speed along the fall on the map, and the largest way of a column across
-    /// it.
+    /// Means of the block: way and speed along the fall on the map. Also the largest way of a column across it.
     struct End {
         double along, speed, across;
         Measurement run;
@@ -147,8 +146,8 @@ Measurement run_structured_slide(const Setup& setup) {
     return m;
 }
 
-/// The flume's block on level ground: whole it does not move at all; it stands where Bell's height 4 c / (rho
-/// g sqrt(Ka)) is above its own, and falls to grains where it is not.
+/// The flume's block on level ground. Intact it does not move at all. It stands where Bell's height 4 c / (rho g
+/// sqrt(Ka)) is above its own. Where it is not, the block falls to grains.
 Measurement run_structured_stand(const Setup& setup) {
     const auto block = [&](double cohesion, double bed_deg) {
         StructuredScene s;

@@ -69,8 +69,7 @@ Measurement run_clay_flume(const Setup& setup) {
     return m;
 }
 
-/// Over the convex slope: 200 kPa stay whole (2A), 60 part in two (2B), the threshold lies between 80 and
-/// 140.
+/// Over the convex slope: 200 kPa stay whole (2A), 60 part in two (2B). The threshold lies between 80 and 140.
 Measurement run_blocks_2(const Setup& setup) {
     const double cell = 100.0 / static_cast<double>(setup.cells);
     const auto run = [&](double cohesion) { return broken(convex_block(cohesion, cell, setup.per_side), 14.0); };
@@ -86,8 +85,8 @@ Measurement run_blocks_2(const Setup& setup) {
     return m;
 }
 
-/// Down into a valley: 400 kPa never yield (3A), 28 hold on the slope and break on the fan below (3B), 15
-/// fall to grains by their own weight (3C).
+/// Down into a valley: 400 kPa never yield (3A). 28 hold on the slope and break on the fan below (3B). 15 fall to
+/// grains by their own weight (3C).
 Measurement run_blocks_3(const Setup& setup) {
     const double cell = 100.0 / static_cast<double>(setup.cells);
     const auto run = [&](double cohesion, double fan, double end) {

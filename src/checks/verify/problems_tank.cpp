@@ -9,11 +9,10 @@ namespace frana::verify {
 namespace {
 
 constexpr double kTankGravity = 10.0, kTankDensity = 1000.0;  // [m/s^2], [kg/m^3]
-// Of a slice: so wide, mirror images in both of its sides do not meet where material is.
+// Of a slice. It is so wide that mirror particles in both of its sides do not meet where material is.
 constexpr double kTankWidthCells = 3.0;
 
-/// A box of water in its own axes, at rest, with hydrostatic pressure; sound ten times as fast as a wave on
-/// it.
+/// A box of water in its own axes, at rest, with hydrostatic pressure. Sound is ten times as fast as a wave on it.
 struct Water {
     Frame3 frame;
     double cell;
@@ -56,8 +55,7 @@ PressureFit fit_pressure(const Mpm3d& flow, const Frame3& frame) {
     return {at_bed, std::sqrt(std::max(0.0, off) / n)};
 }
 
-/// Water 1 m deep in a tank 1 m long, along the grid and turned by 20 degrees; the worse of both, after one
-/// second.
+/// Water 1 m deep in a tank 1 m long, along the grid and turned by 20 degrees. The worse of both, after one second.
 Measurement run_tank(const Setup& setup) {
     constexpr double kEnd = 1.0;
     const double cell = 1.0 / static_cast<double>(setup.cells), width = kTankWidthCells * cell;
@@ -106,16 +104,16 @@ double front_of(const Mpm3d& flow) {
     return *at;
 }
 
-/// Front of a column 1 m wide and 2 m high that slumps along a smooth floor, at times T = t sqrt(2 g / a), beside those
-/// of Martin and Moyce (1952, Phil. Trans. R. Soc. A 244, 312), Fig. 3, n^2 = 2, a = 1.125 inch, as read from it for the
-/// solver PySPH.
+/// Front of a column 1 m wide and 2 m high on a smooth floor, at times T = t sqrt(2 g / a). It slumps. It is
+/// compared with those of Martin and Moyce (1952, Phil. Trans. R. Soc. A 244, 312), Fig. 3, n^2 = 2, a = 1.125 inch, as
+/// read from it for the solver PySPH.
 Measurement run_dam_front(const Setup& setup) {
     constexpr double kMeasured[][2] = {{0.849, 1.245}, {1.212, 1.443}, {1.602, 1.884}, {2.283, 2.689}, {2.950, 3.728}};
     const double cell = 1.0 / static_cast<double>(setup.cells), width = kTankWidthCells * cell;
     const Water water{{}, cell, {1.0, width, 2.0}, {4.5, width, 2.6}, setup.per_side};
     Mpm3d flow(water.scene());
     const double scale = std::sqrt(2.0 * kTankGravity);
-    constexpr double kWeighed = 2.65;  // T at which its energies are looked at, all but the last
+    constexpr double kWeighed = 2.65;  // T at which its energies are recorded, all but the last
     Measurement m;
     SolidStatus now;
     double lead = 0.0, ahead = 0.0;
@@ -136,7 +134,7 @@ Measurement run_dam_front(const Setup& setup) {
     return m;
 }
 
-/// A reservoir 10 m long and 1 m high that breaks: far from the gate and long after, waves are long and the depth is
+/// A reservoir 10 m long and 1 m high that breaks. Far from the gate and long after, waves are long and the depth is
 /// Ritter's (1892), (2 c - x / t)^2 / (9 g), c = sqrt(g). Depths are of slabs half a metre wide; errors over c t, the
 /// water that moves.
 Measurement run_dam_far(const Setup& setup) {
@@ -168,7 +166,7 @@ Measurement run_dam_far(const Setup& setup) {
 }
 
 std::vector<Residual> tank_residuals() {
-    // Half the weight of a square of water is what it pushes sideways: the integral of rho g (H - z) over H.
+    // Half the weight of a square of water is its sideways force: the integral of rho g (H - z) over H.
     double pressure_force = 0.0;
     for (int k = 0; k < 1000; ++k) pressure_force += kTankDensity * kTankGravity * (1.0 - (k + 0.5) / 1000.0) / 1000.0;
     return {{"side force of a square of water over half its weight - 1",

@@ -40,8 +40,8 @@ struct Release {
     double mu, start;
 };
 
-/// Cells per kilometre. The blob has a few points within 1.2 cells: paths of points that start apart cross before
-/// they stop, which a field of velocities cannot follow; for so small a blob that loss is second order in the cell.
+/// Cells per kilometre. The blob has a few points within 1.2 cells. Paths of points that start apart cross before they
+/// stop, which a field of velocities cannot follow. For so small a blob that loss is second order in the cell.
 Measurement run_energy_line(const Release& release, const Setup& setup) {
     const double cell = 1000.0 / static_cast<double>(setup.cells), latest = 400.0;
     const Track& track = *release.track;

@@ -10,8 +10,8 @@ namespace {
 
 constexpr Index kSlopeAcross = 3;  ///< cells across
 
-/// A sheet of 1 m starts from rest down a plane under friction: away from the ends its speed is
-/// u = u_n tanh(a t / u_n), u_n the normal flow's (Manning's h^(2/3) sqrt(S) / n for small slopes).
+/// A sheet of 1 m starts from rest down a plane under friction. Away from the ends its speed is u = u_n tanh(a t /
+/// u_n), u_n the normal flow's (Manning's h^(2/3) sqrt(S) / n for small slopes).
 double normal_flow_error(double slope, bool steep, const WaterFriction& friction, Index cells, double& residual,
                          Measurement& m) {
     constexpr double kPlane = 4000.0, kTime = 60.0, kDepth = 1.0;

@@ -23,8 +23,8 @@ struct Film {
 };
 
 /// A film of even depth that starts from rest down a plane. With T its thickness across the bed the mean speed along it
-/// tends to Nusselt's (1916), g sin(angle) T^2 / (3 nu), as 1 - exp(-3 nu t / T^2) as long as the profile is a parabola;
-/// with Manning's friction besides, the speed at which both hold the weight.
+/// tends to Nusselt's (1916), g sin(angle) T^2 / (3 nu). It does so as 1 - exp(-3 nu t / T^2) as long as the profile is
+/// a parabola. With Manning's friction besides, it tends to the speed at which both hold the weight.
 Film even_film(double slope, bool steep, const WaterFriction& friction, double time, Measurement& m) {
     constexpr double kPlane = 120.0, kDepth = 0.02;
     constexpr Index kCells = 200;  // whatever the grid: so many that the ends are not felt in the middle
@@ -42,7 +42,7 @@ Film even_film(double slope, bool steep, const WaterFriction& friction, double t
         scene.gravity * slope * cosine;  // along the bed; without steep slopes their sine is the tangent
     const double nusselt = drive * t * t / (3.0 * kNu), rate = 3.0 * kNu / (t * t);
     double exact = nusselt * -std::expm1(-rate * time);
-    if (friction.law == WaterFriction::Law::manning) {  // of 0 = pull - rate V - k V^2, by the end of the run
+    if (friction.law == WaterFriction::Law::manning) {  // of 0 = drive - rate V - k V^2, by the end of the run
         const double k = scene.gravity * friction.coefficient * friction.coefficient / std::pow(t, 4.0 / 3.0);
         exact = 2.0 * drive / (rate + std::sqrt(rate * rate + 4.0 * k * drive));
     }
@@ -50,7 +50,8 @@ Film even_film(double slope, bool steep, const WaterFriction& friction, double t
     return film;
 }
 
-/// Rain on a plane until it runs off as fast as it falls: h = (3 nu R x / (g S))^(1/3), the kinematic wave of a film.
+/// Rain on a plane until it runs off as fast as it falls: h = (3 nu R x / (g S))^(1/3). It is the kinematic wave of a
+/// film.
 void rain_fed_film(const Setup& setup, Measurement& m) {
     constexpr double kLength = 20.0, kSlope = 0.05, kRain = 2e-5, kTime = 900.0;
     WaterScene scene;
@@ -81,7 +82,7 @@ Measurement run_film(const Setup& setup) {
 }
 
 /// u = u_0 sin(k y), here a cosine between walls that water slides along, dies at the rate nu (k^2 + chi / h^2). Nearly no
-/// gravity; the ends of the channel, which stop the flow, are too far to be felt in the middle.
+/// gravity. The ends of the channel, which stop the flow, are too far to be felt in the middle.
 Measurement run_shear(const Setup& setup) {
     constexpr double kWidth = 2.0, kWave = constants::kPi, kDepth = 1.5, kSpeed = 1e-3, kTime = 1.0, kThick = 0.1;
     WaterScene scene;

@@ -1,5 +1,5 @@
-// Where parameters differ in space: a block that slides from one friction onto another, at any angle to the grid, and two
-// layers of another viscosity that slide past one another.
+// Where parameters vary spatially. A block slides from one friction onto another, at any angle to the grid. Two layers
+// of different viscosity slide past one another.
 #include <algorithm>
 #include <cmath>
 
@@ -50,7 +50,7 @@ struct Slid {
     double stop, speed, drift;
 };
 
-/// A blob of some cells: its parts cross the border one after the other, and so it is no rigid block until cells are
+/// A blob of some cells. Its parts cross the border one after the other, and so it is no rigid block until cells are
 /// small.
 Slid slide_over(const TwoZones& zones, const Setup& setup, double turn_deg, Measurement& m) {
     const double cosine = std::cos(zones.slope()), cell = 100.0 / static_cast<double>(setup.cells);
@@ -86,9 +86,9 @@ Measurement run_zone_block(const Setup& setup) {
     return m;
 }
 
-/// A layer on level ground slides along x, its halves in opposite directions. Each half is a rheology's zone. The speed diffuses
-/// as heat does between two bodies that touch: the border has one speed at all times (Carslaw and Jaeger 1959, chapter 2;
-/// src/shallow/THEORY.md, section 19).
+/// A layer on level ground slides along x, its halves in opposite directions. Each half is a rheology's zone. The speed
+/// diffuses as heat does between two bodies in contact. The border has one speed at all times (Carslaw and Jaeger 1959,
+/// chapter 2; src/shallow/THEORY.md, section 19).
 struct TwoLayers {
     double below = 0.1, above = 0.9;  ///< kinematic viscosity [m^2/s]
     double speed = 0.5;               ///< of the upper half, the lower has its opposite [m/s]
@@ -122,7 +122,7 @@ std::vector<Residual> contact_residuals() {
 
 constexpr double kContactWidth = 40.0, kContactEnd = 10.0;  // [m], [s]
 
-/// Steps are short enough that no stress is capped: 2 nu dt / cell^2 below scheme.stress_cap at the speed of flow and waves.
+/// Steps are so short that no stress is capped. 2 nu dt / cell^2 is below scheme.stress_cap at the speed of flow and waves.
 double contact_cfl(const Scene& scene, const TwoLayers& layers, double cell) {
     const double signal = layers.speed + std::sqrt(scene.gravity), longest = 0.2 * cell * cell / (2 * layers.above);
     return signal * longest / cell;

@@ -1,5 +1,5 @@
 #pragma once
-// A dam break on a steep plane by the equations that columns on steep terrain obey, not linearised in the depth gradient.
+// A dam break on a steep plane by the equations of steep terrain, not linearised in the depth gradient.
 #include <vector>
 
 #include "checks/verify/problem.h"
@@ -31,7 +31,7 @@ private:
     std::vector<double> x_, u_;  ///< edges of the parcels and their velocities
 };
 
-/// How far the solution changes with half the parcels, and that without friction and on a gentle slope it is Ritter's.
+/// How far the solution changes with half the parcels. Also that without friction and on a gentle slope it is Ritter's.
 std::vector<Residual> steep_dam_residuals();
 
 }  // namespace frana::verify

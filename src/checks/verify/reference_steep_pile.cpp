@@ -115,7 +115,7 @@ SteepPile::Local SteepPile::local(const Motion& now, Index n) const {
             Vec2(basis_x_.value.row(n).dot(now.u), basis_y_.value.row(n).dot(now.v))};
 }
 
-/// At the start v / fall is what the pull and this friction make it: pull_y / (g cos^2 slope).
+/// At the start v / fall is what gravity and this friction make it: pull_y / (g cos^2 slope).
 Vec2 SteepPile::linearised(const Local& here, double fall) const {
     const double s = plane_.slope, gravity = plane_.gravity / (1.0 + s * s);
     const Vec2 drive(gravity * (s - here.gradient.x() / (1.0 + s * s)), -gravity * here.gradient.y());
@@ -123,7 +123,7 @@ Vec2 SteepPile::linearised(const Local& here, double fall) const {
     return drive - plane_.friction * gravity * Vec2(1.0, aside);
 }
 
-/// At the start friction points against the pull.
+/// At the start friction points against the drive.
 Vec2 SteepPile::steep(const Local& here) const {
     const double s = plane_.slope, g = plane_.gravity, cosine = 1.0 / std::sqrt(1.0 + s * s);
     const Vec2 rise = here.gradient - Vec2(s, 0.0);
@@ -133,7 +133,7 @@ Vec2 SteepPile::steep(const Local& here) const {
     return drive - plane_.friction * g * cosine / speed * along;
 }
 
-/// The place of the start that has come to (x, y), by Newton's method from the linear part of the map.
+/// The place of the start that has come to (x, y). Newton's method starts from the linear part of the map.
 SteepPile::Place SteepPile::at(double x, double y) const {
     double a = (x - end_.x[0]) / plane_.length_x, b = y / plane_.length_y;
     for (int n = 0; n < 20; ++n) {

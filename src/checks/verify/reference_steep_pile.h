@@ -11,9 +11,10 @@ namespace frana::verify {
 /// Map coordinates, x down the plane z = -slope x, y across; at rest at t = 0 with the depth
 /// height (1 - (x / length_x)^2 - (y / length_y)^2) [m], vertical. With e = grad(h) - (slope, 0), q = -slope e_x:
 ///   dv/dt = -g e / (1 + max(0, q)) - mu g cos v / |V|,   |V| along the plane.
-/// Linearised in grad(h) and in the direction of friction (v / V with the speed of the centre) this is the theory of
-/// Hutter et al. (1993), whose answer is a linear map of the start. Here the map from the start, x(a, b, t) and y(a, b, t), is a polynomial; its coefficients obey
-/// the equations in the mean over the mass (Galerkin), Runge-Kutta in time. No grid, no diffusion.
+/// Linearised in grad(h) and in the direction of friction this is the theory of Hutter et al. (1993). The direction is
+/// v / V with the speed of the centre. Its answer is a linear map of the start. Here the map from the start, x(a, b, t)
+/// and y(a, b, t), is a polynomial. Its coefficients obey the equations in the mean over the mass (Galerkin),
+/// Runge-Kutta in time. No grid, no diffusion.
 class SteepPile {
 public:
     struct Plane {

@@ -5,8 +5,8 @@
 
 namespace frana::verify {
 
-/// What the points within two cells of the middle have: speed along the bed, thickness, and how far along the bed their
-/// mean has come.
+/// What the points within two cells of the middle have: speed along the bed and thickness. Also how far along the bed
+/// their mean has come.
 SlabState middle_of(Trial& trial, double middle, double cosine);
 
 }  // namespace frana::verify

@@ -10,7 +10,7 @@ struct Slide {
     double turn = 0.0;
     double start = 0.0, reach = 0.0;  ///< s where the blob starts, and the farthest s of its way [m]
     double radius = 1.2;              ///< of the blob [cells]
-    double depth = 2e-7;              ///< of the blob [cells]; so thin that its pressure has nothing to push
+    double depth = 2e-7;              ///< of the blob [cells]; so thin that its pressure has no effect
     int per_side = 2;
 
     double along(double x, double y) const;

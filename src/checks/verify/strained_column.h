@@ -23,8 +23,8 @@ struct ShearError {
 };
 ShearError jaumann_shear_error(double gamma, int steps);
 
-/// What an unconfined column bears [Pa]: Mohr and Coulomb's 2 c cos(phi) / (1 - sin(phi)), which their pyramid and the
-/// cone of triaxial compression have; the cone of plane strain k / (1 / sqrt(3) - alpha).
+/// What an unconfined column bears [Pa]. Mohr and Coulomb's pyramid and the cone of triaxial compression have 2 c
+/// cos(phi) / (1 - sin(phi)). The cone of plane strain has k / (1 / sqrt(3) - alpha).
 double unconfined_strength(const ColumnLaw& law, double cohesion);
 /// The same as squeezing by a tenth finds it.
 double squeezed_strength(const ColumnLaw& law, double cohesion);

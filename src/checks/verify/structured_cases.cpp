@@ -49,7 +49,7 @@ StructuredScene clay_flume(const Clay& clay, double cell, int per_side) {
     s.grid = grid_over({-0.4, 0.0}, {1.8, 0.5}, cell);
     add_channel(s, 0.0, 0.5);
     // Half a cell narrower, so that the nodes along its side are free. On them the obstacle is wider by half
-    // a cell all the same, and coverage is 0.75 and 0.46: as much as a twentieth of the block's width does.
+    // a cell all the same, and coverage is 0.75 and 0.46. A twentieth of the block's width does as much.
     Obstacle wall;
     wall.low.x() = 0.0, wall.high = {0.15, kSide + 0.4 * kWidth - 0.5 * cell}, wall.friction = 0.3;
     s.obstacles.push_back(wall);
@@ -85,8 +85,8 @@ StructuredScene convex_block(double cohesion, double cell, int per_side) {
 }
 
 /// Slope -tan(25 deg) (1 - t) along x and t fan tanh(y / 20 m) across, t = turn(x - 220 m), y from the
-/// block's middle: the gradient of a surface but for the 20 m where t turns, where the surface would rise or
-/// fall along x too.
+/// block's middle. It is the gradient of a surface but for the 20 m where t turns. There the surface would rise or fall
+/// along x too.
 StructuredScene valley_block(double cohesion, double fan, double cell, int per_side) {
     StructuredScene s = field_block(12.0, cohesion, 600.0, cell, per_side);
     s.ground = terrain_ground([fan](double x, double y) {
@@ -98,7 +98,7 @@ StructuredScene valley_block(double cohesion, double fan, double cell, int per_s
 
 namespace {
 
-/// Height of the ground whose fall along x is that of the scene, from x = 0 on, in steps of a metre.
+/// Height of ground with the scene's fall along x, from x = 0 on, in steps of a metre.
 Function height_along_x(const Ground& ground) {
     return [ground](double x, double y) {
         double z = 0.0;

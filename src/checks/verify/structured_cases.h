@@ -13,17 +13,17 @@ struct Clay {
 };
 constexpr Clay kSoftClay{18.3e3, 27.0}, kStiffClay{26.7e3, 28.0};
 
-/// A block of clay, 0.30 x 0.25 x 0.10 m, that comes down 42 degrees and strikes at 2.39 m/s an obstacle over
-/// two fifths of its width, where the floor turns to 5 degrees.
+/// A block of clay, 0.30 x 0.25 x 0.10 m, that comes down 42 degrees. At 2.39 m/s it strikes an obstacle over two
+/// fifths of its width, where the floor turns to 5 degrees.
 StructuredScene clay_flume(const Clay& clay, double cell, int per_side = 2);
 
-/// Share of the block's length, in slices of a cell, in which a column of the unhindered part (0.28 to 0.80
-/// of the width from the obstacle's side, whose corner is at 0.40) is broken by more than 0.9. `seeds` are
-/// the scene's.
+/// Share of the block's length in which a column of the unhindered part is broken by more than 0.9. It is in slices of
+/// a cell. That part is 0.28 to 0.80 of the width from the obstacle's side, whose corner is at 0.40. `seeds` are the
+/// scene's.
 double crack_coverage(const StructuredFlow& flow, const StructuredSeeds& seeds);
 
-/// Blocks 100 x 60 m: 2A and 2B over a convex slope, 5 m thick, 3A to 3C down a slope into a valley, 12 m
-/// thick, whose floor falls away from the middle by `fan` at its sides, or rises where that is positive.
+/// Blocks 100 x 60 m. 2A and 2B go over a convex slope, 5 m thick. 3A to 3C, 12 m thick, go down a slope into a valley.
+/// Its floor falls away from the middle by `fan` at its sides, or rises where that is positive.
 StructuredScene convex_block(double cohesion, double cell, int per_side = 2);
 StructuredScene valley_block(double cohesion, double fan, double cell, int per_side = 2);
 

@@ -15,7 +15,7 @@ struct Component {
 };
 const std::vector<Component>& components();
 
-/// A number of a problem that the study looks at.
+/// A number of a problem that the study reads.
 struct StudyColumn {
     std::string problem;
     Index cells;

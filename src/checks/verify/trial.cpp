@@ -111,7 +111,7 @@ Trial::Trial(Scene scene, const Setup& setup, bool keep_terrain) : scene_(std::m
     const Scheme& s = scene_.scheme;  // other kernels have no float
     if (s.shape != Shape::quadratic || s.transfer != Transfer::tpic) scene_.scheme.precision = Precision::full;
     simulation_ = std::make_unique<DepthAveraged>(scene_);
-    first_ = simulation_->frame().status;  // a frame knows the kinetic energy before the first step
+    first_ = simulation_->frame().status;  // a frame has the kinetic energy before the first step
 }
 
 void Trial::run_to(double end, const std::function<void(const Status&)>& each) {

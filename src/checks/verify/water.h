@@ -13,8 +13,7 @@ GridGeometry cells_over(Index nx, Index ny, double cell);
 double cell_mean(const Function& f, double x, double y, double cell);
 
 /// A run to `end`, timed; calls each(flow) after every step. Fills steps, points (cells that hold water at
-/// the end), mass_error and momentum_residual: what the ledger leaves open, over all momentum that went
-/// round.
+/// the end), mass_error and momentum_residual. That is what the ledger leaves open, over all momentum that went round.
 Measurement run_water(WaterFlow& flow, double end, const std::function<void(const WaterFlow&)>& each = {});
 
 /// Exact fields; without velocities there is no norm of momentum.

@@ -6,16 +6,16 @@
 
 namespace frana::bed {
 
-/// Shares of the depth of a Bingham sheet: its plug (yield stress over bed stress) and the sheared rest, each to full
-/// relative precision.
+/// Shares of the depth of a Bingham sheet, each to full relative precision. They are its plug (yield stress over bed
+/// stress) and the sheared rest.
 struct SheetShares {
     double plug, sheared;
 };
 
-/// src/shallow/THEORY.md (43): the root z in (0, 1] of z^3 - (3 + b + d) z + 2 + b = 0, b, d >= 0 (Fois et al. 2024, eq. 5, corrected:
-/// |v| = tau_B h / (6 mu) (2 + z)(1 - z)^2, then b = 0 and d = 6 mu |v| / (tau_Y h)). Near z = 1, where two roots meet,
-/// Newton's method is slow and half the digits are lost; there it runs on y = 1 - z, which solves
-/// 3 y^2 - y^3 + (b + d) y = d. Four steps reach round-off from starts that are right to 6 %.
+/// src/shallow/THEORY.md (43): the root z in (0, 1] of z^3 - (3 + b + d) z + 2 + b = 0, b, d >= 0 (Fois et al. 2024,
+/// eq. 5, corrected). It follows from |v| = tau_B h / (6 mu) (2 + z)(1 - z)^2, then b = 0 and d = 6 mu |v| / (tau_Y h).
+/// Near z = 1, where two roots meet, Newton's method is slow and half the digits are lost. There it runs on y = 1 - z,
+/// which solves 3 y^2 - y^3 + (b + d) y = d. Four steps reach round-off from starts that are right to 6 %.
 inline SheetShares bingham_sheet(double b, double d) {
     if (!(d > 0.0)) return {1.0, 0.0};
     const double a = b + d;

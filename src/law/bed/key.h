@@ -10,7 +10,7 @@ namespace frana::bed {
 using laws::Key;
 using laws::Missing;
 
-/// The friction coefficient, by its angle; beside friction().
+/// The friction coefficient, by its angle; an alternative to friction().
 template <class Law>
 Key<Law> friction_angle(double Law::*mu, Missing missing = Missing::refused) {
     return {mu,
@@ -23,7 +23,7 @@ Key<Law> friction_angle(double Law::*mu, Missing missing = Missing::refused) {
             [](double degrees) { return std::tan(degrees * constants::kPi / 180.0); }};
 }
 
-/// The friction coefficient; beside friction_angle().
+/// The friction coefficient; an alternative to friction_angle().
 template <class Law>
 Key<Law> friction(double Law::*mu, Missing missing = Missing::refused) {
     return {mu,

@@ -1,5 +1,5 @@
 #pragma once
-// Friction that differs in space: bed laws on the nodes of a grid.
+// Spatially varying friction: bed laws on the nodes of a grid.
 #include <vector>
 
 #include "law/bed/laws.h"

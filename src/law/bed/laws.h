@@ -12,7 +12,7 @@
 namespace frana {
 
 /// Shear stress between the flow and its bed. Keys, words, kernels and descriptions are made from this list, in its order.
-/// A law only ever slows a node down: it may stop it, it never turns it round, and a node at rest stays at rest to the last
+/// A law only ever slows a node down. It may stop it but never turns it round. A node at rest stays at rest to the last
 /// bit until driven hard enough.
 using BedLaw = std::variant<bed::None, bed::Coulomb, bed::Voellmy, bed::Manning, bed::Bingham, bed::Pouliquen>;
 

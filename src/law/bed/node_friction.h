@@ -1,5 +1,5 @@
 #pragma once
-// A bed law at the nodes of a kernel: one or four at once, and the step in which friction ends a motion,
+// A bed law at the nodes of a kernel, one or four at once. It has the step in which friction ends a motion,
 // src/shallow/THEORY.md (48).
 #include <type_traits>
 #include <utility>
@@ -16,7 +16,8 @@ template <class Law>
 inline constexpr bool kTakesFour<Law, std::void_t<decltype(std::declval<const Law&>().speed_after(
                                           BedStateOf<Double4>{}, Double4{}, Double4{}, 0.0))>> = true;
 
-/// The speeds that a law leaves of `driven` after a step from `s0`: of four nodes at once by any law, or of one.
+/// The speeds that a law leaves of `driven` after a step from `s0`. They are of four nodes at once by any law, or of
+/// one.
 template <class Law>
 [[gnu::always_inline]] inline Double4 speeds_after(const Law& law, const BedStateOf<Double4>& bed, Double4 s0,
                                                    Double4 driven, double dt) {
@@ -45,8 +46,8 @@ struct BrakedOf {
     double velocity_dt, drift;  ///< [s]; no drift: nothing to correct
 };
 
-/// The speed, or the mean speed over the coming drift if friction ends the motion in it, and holds: the speed in the
-/// drift's middle, where the leapfrog stands, would leave the stop short by up to brake drift^2 / 8.
+/// The speed. If friction ends the motion in the coming drift, and holds, it is the mean speed over the drift. The
+/// speed in the drift's middle, where the leapfrog stands, would leave the stop short by up to brake drift^2 / 8.
 template <class Real, class Law>
 [[gnu::always_inline]] inline Real mean_if_stopping(const Law& law, const BedStateOf<Real>& state,
                                                     const BrakedOf<Real>& b) {

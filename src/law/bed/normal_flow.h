@@ -1,5 +1,5 @@
 #pragma once
-// Uniform flow down a plane, by any bed law: friction balances the pull of gravity (src/shallow/THEORY.md (65)).
+// Uniform flow down a plane, by any bed law: friction balances gravity (src/shallow/THEORY.md (65)).
 #include <cmath>
 #include <limits>
 #include <variant>
@@ -16,8 +16,8 @@ struct Plane {
     double cosine() const { return 1.0 / std::sqrt(1.0 + slope * slope); }
 };
 
-/// Speed along the bed of uniform flow of a thickness normal to the bed [m/s]; 0: it stays at rest; infinite: it gets
-/// faster for ever. A law's step keeps its steady speed, however long it is: the root is found by halving.
+/// Speed along the bed of uniform flow of a thickness normal to the bed [m/s]. 0: it stays at rest. Infinite: it gets
+/// faster for ever. A law's step leaves its steady speed as it is, however long the step: the root is found by halving.
 inline double uniform_speed(const BedLaw& law, double thickness, const Plane& plane) {
     const double c = plane.cosine(), dt = 1.0, drive = plane.gravity * plane.slope * c * c;
     const BedState bed{plane.gravity * c * c, thickness, 1.0 / c, c, plane.gravity, plane.density};

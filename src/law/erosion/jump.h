@@ -6,8 +6,8 @@
 
 namespace frana::erosion {
 
-/// What the flow's base drags with more than the bed can bear goes into what is set in motion (Fraccarollo and Capart 2002,
-/// J. Fluid Mech. 461; Medina et al. 2008, Landslides 5): E = (tau - tau_c) / (rho u).
+/// The flow's base drags with more than the bed can bear (Fraccarollo and Capart 2002, J. Fluid Mech. 461; Medina et
+/// al. 2008, Landslides 5). The excess goes into what is set in motion: E = (tau - tau_c) / (rho u).
 struct Jump {
     double threshold = 1000.0;  ///< tau_c [Pa]
 

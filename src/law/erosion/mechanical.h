@@ -6,10 +6,11 @@
 
 namespace frana::erosion {
 
-/// Flow and bed slide on one another with the shear velocity of the stress that friction in the bed does not hold (after
-/// Pudasaini and Krautblatter 2021, Nat. Commun. 12, for one phase; after Pudasaini and Fischer 2020 the bed that goes has
-/// 1 / (1 + rho_b / rho) of the flow's speed): E = nu sqrt((tau - rho_b mu_b g_n h) / (rho - rho_b / (1 + rho_b / rho))). Its
-/// branch of deposition is left out: E >= 0. tau is of the run's bed law; Coulomb friction is theirs.
+/// Flow and bed slide on one another with the shear velocity of a stress. It is the stress that friction in the bed
+/// does not hold (after Pudasaini and Krautblatter 2021, Nat. Commun. 12, for one phase). After Pudasaini and Fischer
+/// 2020 the bed that goes has 1 / (1 + rho_b / rho) of the flow's speed. E = nu sqrt((tau - rho_b mu_b g_n h) / (rho -
+/// rho_b / (1 + rho_b / rho))). Its branch of deposition is left out: E >= 0. tau is of the run's bed law; Coulomb
+/// friction is theirs.
 struct Mechanical {
     double bed_friction = 0.0;    ///< mu_b [1]
     double shear_velocity = 1.0;  ///< nu, E over the shear velocity [1]

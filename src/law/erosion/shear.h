@@ -7,9 +7,9 @@
 namespace frana::erosion {
 
 /// A rate that holds until the bed is as deep as its stress allows (Frank et al. 2015, Nat. Hazards Earth Syst. Sci. 15,
-/// 2569, of RAMMS): E = rate while the depth taken is below e_m = k (tau - tau_c), and none for tau <= tau_c. Their numbers
-/// are of the debris flows of the Illgraben. A deposit counts as not taken. Where e_m is less than its depth, it is taken more
-/// slowly by that share, so that a stress just above the threshold does not take all of it.
+/// 2569, of RAMMS). E = rate while the depth taken is below e_m = k (tau - tau_c), and none for tau <= tau_c. Their
+/// numbers are of the debris flows of the Illgraben. A deposit counts as not taken. Where e_m is less than its depth,
+/// it is taken more slowly by that share. So a stress just above the threshold does not take all of it.
 struct Shear {
     double erosion_rate = 0.025;     ///< [m/s]
     double threshold = 1000.0;       ///< tau_c [Pa]

@@ -1,5 +1,5 @@
 #pragma once
-// What an erosion law sees of a point of the flow.
+// A flow point's state for an erosion law.
 #include "base/simd.h"
 
 namespace frana::erosion {

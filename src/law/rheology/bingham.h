@@ -7,9 +7,9 @@
 
 namespace frana::rheology {
 
-/// src/shallow/THEORY.md (25): plug share of a Bingham sheet whose bed is braked by nothing else (bingham_sheet with
-/// b = 0), to absolute round-off: y = 1 - plug solves 3 y^2 - y^3 + d (y - 1) = 0. Convex and rising for y < 1; two
-/// steps of Halley's method from a start that is right to 5 % leave 2e-17.
+/// src/shallow/THEORY.md (25): plug share of a Bingham sheet whose bed is braked by nothing else, to absolute round-off
+/// (bingham_sheet, b = 0). y = 1 - plug solves 3 y^2 - y^3 + d (y - 1) = 0. Convex and rising for y < 1; two steps of
+/// Halley's method from a start that is right to 5 % leave 2e-17.
 template <class Real>
 [[gnu::always_inline]] inline Real plug_share(Real d) {
     d = min(d, Real{} + 1e100);  // squares must not overflow
@@ -36,8 +36,8 @@ struct BinghamOf {
     }
 
     /// src/shallow/THEORY.md (23), (24): sigma = (2 mu + tau_Y / sqrt(I2 + floor^2)) eps (Fois et al. 2024, eq. 3,
-    /// corrected). I2 holds the plane strain rate, its incompressible vertical part, and the shear across the bed,
-    /// 3/(2 + zeta) V/T, of a Bingham sheet (eq. 4). Where nothing yields it is Newton's.
+    /// corrected). I2 holds the plane strain rate, its incompressible vertical part, and the shear across the bed. That
+    /// is 3/(2 + zeta) V/T, of a Bingham sheet (eq. 4). Where nothing yields it is Newton's.
     template <class Real>
     [[gnu::always_inline]] PlaneOf<Real> stress(const StrainState<Real>& s) const {
         const auto yields = yield_stress > 0.0;

@@ -1,5 +1,5 @@
 #pragma once
-// Rheologies that differ in space: on the nodes of a grid.
+// Spatially varying rheologies: on the nodes of a grid.
 #include <vector>
 
 #include "law/law_map.h"

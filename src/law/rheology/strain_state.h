@@ -1,5 +1,5 @@
 #pragma once
-// What a rheology sees of a point, and what it answers. Pressure is not part of it. Numbers of equations:
+// A point's state for a rheology, and the resulting stress. Pressure is not part of it. Numbers of equations:
 // src/shallow/THEORY.md, section 7.
 #include "base/simd.h"
 
@@ -12,7 +12,7 @@ struct PlaneOf {
 };
 using Plane = PlaneOf<double>;
 
-/// What a rheology sees of a point.
+/// A point's state for a rheology.
 template <class Real>
 struct StrainState {
     PlaneOf<Real> rate;  ///< sym grad v [1/s]

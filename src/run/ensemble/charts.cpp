@@ -1,4 +1,4 @@
-// Charts of an ensemble: how far the flow comes, how that settles with the number of runs, and what it hangs on.
+// Charts of an ensemble: how far the flow comes, how that settles with more runs, what it depends on.
 #include <fmt/core.h>
 
 #include <algorithm>

@@ -18,7 +18,7 @@ namespace frana {
 namespace fs = std::filesystem;
 namespace {
 
-/// Where the file of an ensemble is, for who joins its runs later.
+/// Where the file of an ensemble is, for shards that join its runs later.
 constexpr const char* kOrigin = "ensemble.path";
 
 /// Shards of one ensemble would all write the same.

@@ -32,22 +32,23 @@ public:
     const std::filesystem::path& folder() const { return dir_; }
 
     /// Those of the shard that no shard in the folder has run; what was refused is tried again. Throws UserError where the
-    /// shard has run before, unless it is to go on, and where an ensemble has no room.
+    /// shard has run before, unless it is to go on. So too where an ensemble has no room.
     std::vector<Index> left_to_run(const Shard& shard, bool resume) const;
 
-    /// Runs these samples of a shard on so many threads (0: as OMP_NUM_THREADS or the machine says), and keeps what they tell in
-    /// the folder. An interrupt leaves what has run. `done` hears of each run, on any thread: whether it failed.
+    /// Runs these samples of a shard on so many threads (0: as OMP_NUM_THREADS or the machine says). Saves their
+    /// results in the folder. An interrupt leaves what has run. `done` hears of each run, on any thread: whether it
+    /// failed.
     void run(const Shard& shard, const std::vector<Index>& samples, int threads, const Interrupt& interrupt,
              const std::function<void(bool)>& done) const;
 
-    /// A sample on this thread that leaves nothing. Nothing when the interrupt asked for an end meanwhile.
+    /// A sample on this thread that leaves nothing. Nothing when the interrupt was requested meanwhile.
     std::optional<SampleResult> try_out(Index sample, const Interrupt& interrupt) const;
 
     /// The maps of all runs in the folder. Throws UserError where no run has an answer.
     EnsembleSummary join(std::optional<double> wall_seconds) const;
 
-    /// Share of the runs in the folder with more than `threshold` of a field that is kept of them [1], as the map of
-    /// ensemble.exceed has it. Throws UserError.
+    /// Share of the folder's runs with more than `threshold` of a stored field [1], as in the map of ensemble.exceed.
+    /// Throws UserError.
     Raster probability(const std::string& field, double threshold) const;
 
 private:

@@ -38,7 +38,7 @@ std::size_t place_of(const KeptRun& run, const PeakBlock& block) {
     return static_cast<std::size_t>(found - block.samples.begin());
 }
 
-/// A file whose runs are being handed on.
+/// A file whose runs are being read.
 struct OpenFile {
     PeakBlock block;
     std::size_t left = 0;  ///< runs still to come

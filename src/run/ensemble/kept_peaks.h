@@ -14,8 +14,8 @@ struct KeptRun {
     std::filesystem::path file;
 };
 
-/// Reads files when their first run is asked for, and forgets them after their last one. So it holds some 64 runs for each
-/// process that ran the ensemble.
+/// Reads a file at the first request for one of its runs, and forgets it after the last one. So it holds some 64 runs
+/// for each process that ran the ensemble.
 class KeptPeaks final : public PeakSource {
 public:
     /// Reads all of the files once. Throws UserError when one of them cannot be read, lacks a run, or has other fields or

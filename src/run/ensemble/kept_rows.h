@@ -1,5 +1,5 @@
 #pragma once
-// Rows of runs that outlive the program: whatever kills it, a file of them is whole, and says what they belong to.
+// Rows of runs that outlive the program. However it ends, a file of them is whole, and says what they belong to.
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -36,7 +36,7 @@ struct RowsOf {
 /// Throws UserError where the rows of a file belong to something else (the first difference is said).
 void require_rows_of(const std::filesystem::path& file, const RowsOf& of);
 
-/// Hands on the rows of a file. Throws UserError where they belong to something else (the first difference is said), or are no
+/// Passes on the rows of a file. Throws UserError where they belong to something else (the first difference is said), or are no
 /// rows.
 void for_each_row(const std::filesystem::path& file, const RowsOf& of,
                   const std::function<void(const std::string& line)>& body);

@@ -102,7 +102,7 @@ private:
                        fmt::format("time by which {:g} of the runs have come; none where fewer come", q));
     }
 
-    /// What the field hangs on at each pixel, where the samples were made for that.
+    /// What the field depends on at each pixel, where the samples were made for that.
     void write_sensitivity(const PeakField& field, const PixelValues& pixels) {
         const bool shares = plan_.method == Method::saltelli;
         if (!shares && plan_.method != Method::morris) return;
@@ -145,7 +145,8 @@ private:
             high.values[k] = (p.values[k] * runs_.total + runs_.failed_weight) / all;
         }
         raster(name + "_error", error, "1", "standard error of the " + meaning);
-        // The standard error is 0 where all runs agree, however few they are. Designs are closer than chance; a table may be chance.
+        // The standard error is 0 where all runs agree, however few they are. Designs are closer than chance; a table
+        // may be chance.
         if (plan_.method == Method::random || plan_.method == Method::table) write_wilson(name, p, meaning);
         if (runs_.failed_weight > 0.0) {
             raster(name + "_low", low, "1", meaning + ", if no run that failed did");
@@ -216,7 +217,7 @@ std::vector<std::string> files_of_last_time(const fs::path& dir) {
     return files;
 }
 
-/// Maps that nobody asks for any more would be taken for those of these runs.
+/// Old maps that the plan no longer has would be taken for those of these runs.
 void remove_others(const fs::path& dir, const std::vector<std::string>& before, const std::vector<std::string>& now) {
     for (const std::string& file : before) {
         const fs::path name = fs::path(file).lexically_normal();

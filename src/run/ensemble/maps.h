@@ -27,7 +27,7 @@ struct EnsembleSummary {
     double failed_share = 0.0;           ///< of all weights, that of the runs that failed [1]
     bool weighted = false;               ///< weights differ
     bool maps_drawn = true;
-    std::vector<HazardArea> hazard;  ///< from the least to the greatest; empty where no classes were asked for
+    std::vector<HazardArea> hazard;  ///< from the least to the greatest; empty without classes
     std::string hazard_remark;       ///< what to mind about the classes, in sentences; empty where nothing
     std::vector<std::string> files;  ///< that were made
 
@@ -35,12 +35,13 @@ struct EnsembleSummary {
     bool too_many_failed() const { return failed_share > 0.05; }
 };
 
-/// Writes runs.csv, rasters, outlines, pictures, report.md and ensemble.json of all runs so far. Throws UserError when none has an answer, or a file cannot be written.
+/// Writes runs.csv, rasters, outlines, pictures, report.md and ensemble.json of all runs so far. Throws UserError when
+/// none has an answer, or a file cannot be written.
 EnsembleSummary write_maps(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
                            const KeptResults& kept, std::optional<double> wall_seconds);
 
 /// What rasters/probability_FIELD_THRESHOLD.tif holds or would hold, in double precision. Throws
-/// UserError where no run has an answer, or the ensemble keeps no such field.
+/// UserError where no run has an answer, or the ensemble stores no such field.
 Raster probability_map(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
                        const KeptResults& kept, const std::string& field, double threshold);
 

@@ -70,7 +70,7 @@ public:
     double total = 0.0, failed_weight = 0.0;  ///< sums of weights
 };
 
-/// Writes the classes of hazard, where the plan asks for them: raster and picture; notes their areas.
+/// Writes the classes of hazard, where the plan has them: raster and picture. Notes their areas.
 void write_hazard(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
                   const WeightedRuns& runs, EnsembleSummary& summary);
 

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What each outcome hangs on, where the samples were made for that.
+/// What each outcome depends on, where the samples were made for that.
 std::vector<Sensitivity> sensitivity_of(const Outcome& outcome, const EnsemblePlan& plan,
                                         const std::vector<SampleResult>& results) {
     if (plan.method != Method::saltelli && plan.method != Method::morris) return {};
@@ -44,7 +44,7 @@ Json sensitivity_json(const EnsemblePlan& plan, const EnsembleBase& base, const 
     return all;
 }
 
-/// Rows of the page: what hangs on which key.
+/// Rows of the page: what depends on which key.
 std::string sensitivity_section(const EnsemblePlan& plan, const EnsembleBase& base,
                                 const std::vector<SampleResult>& results) {
     if (plan.method != Method::saltelli && plan.method != Method::morris) return "";

@@ -18,8 +18,8 @@
 namespace frana {
 namespace {
 
-/// One run asks for what the last one gave back: kept, it is not asked of the system page by page again, which took a
-/// third of a short run. Arrays so large that most of their pages are never touched still come from the system.
+/// One run allocates what the last one freed. Held back, it does not come from the system page by page again. That took
+/// a third of a short run. Arrays so large that most of their pages are never used still come from the system.
 void keep_memory() {
 #ifdef __GLIBC__
     constexpr int large = 4 << 20, kept = 1 << 30;  // [bytes]

@@ -8,8 +8,8 @@
 
 namespace frana {
 
-/// Calls body(0), body(1), ... on so many threads, each number once, until they are done or an end is asked for. The first
-/// exception ends it too, and comes out here.
+/// Calls body(0), body(1), ... on so many threads, each number once, until they are done or an end is requested. The
+/// first exception ends it too, and comes out here.
 void for_each_run(std::size_t count, int threads, const Interrupt& interrupt,
                   const std::function<void(std::size_t)>& body);
 

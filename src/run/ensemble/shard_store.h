@@ -30,8 +30,8 @@ std::string mark_of(const EnsemblePlan& plan);
 /// Whether the folder has runs of an ensemble. Throws UserError where they are another's (what differs is said).
 bool has_runs_of(const std::filesystem::path& dir, const EnsemblePlan& plan);
 
-/// Keeps results as they come, from any thread, many at a time: their peaks in an HDF5 file, then their rows in runs.csv. A row
-/// is what counts: whatever kills the program, a run is kept whole or not at all.
+/// Stores results as they come, from any thread, many at a time. Their peaks go to an HDF5 file, then their rows to
+/// runs.csv. A row is what counts: however the program ends, a run is stored whole or not at all.
 class ShardStore {
 public:
     ShardStore(std::filesystem::path folder, const EnsemblePlan& plan, const EnsembleBase& base);
@@ -63,7 +63,7 @@ std::string csv_field(const std::string& text);
 /// A number as a field of a table; empty where it is not known.
 std::string text_of_known(const std::optional<double>& number);
 
-/// What is kept of all runs so far, by sample.
+/// What is stored of all runs so far, by sample.
 struct KeptResults {
     std::vector<SampleResult> results;               ///< without their peaks
     std::vector<std::filesystem::path> peaks_files;  ///< of each: where its peaks are; empty: it has no answer

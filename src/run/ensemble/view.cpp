@@ -18,8 +18,8 @@ namespace {
 // Of the maps. Probabilities at all thresholds of three fields then fill some 10 MB.
 constexpr Index kMostPlaces = 60'000;
 
-/// Round thresholds from `low` to the first that none of the values exceeds, 32 a decade, and what is asked for. So that the page
-/// shows exact shares of the runs wherever its slider stands.
+/// Round thresholds from `low` to the first that none of the values exceeds, 32 a decade, and those in `asked`. So that
+/// the page shows exact shares of the runs wherever its slider stands.
 std::vector<double> thresholds_between(double low, double high, const std::vector<double>& asked) {
     std::vector<double> all = asked;
     if (low > 0.0) all.push_back(low);

@@ -26,8 +26,8 @@ struct BarrierHit {
     std::array<double, 4> side_depth{unknown, unknown, unknown, unknown};     ///< [m]
 };
 
-/// A side has the pixels whose middle lies outside, in its direction (within 45 degrees) from the nearest place of the
-/// outline; on the very diagonal they belong to both sides. The cost is that of the box around the outline.
+/// A side has pixels whose middle lies outside. It is in that direction (within 45 degrees) from the nearest place of
+/// the outline. On the very diagonal they belong to both sides. The cost is that of the box around the outline.
 BarrierHit hit_on(const Polygons& outline, const std::vector<ProductRaster>& rasters);
 
 /// Of all barriers, in their order; of those without an outline (lines, meshes) nothing is known.

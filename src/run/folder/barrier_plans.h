@@ -6,8 +6,8 @@
 
 namespace frana {
 
-/// Barriers in plan, as maps show them: every ring of an outline closed, the foot of a wall along a line. One that was given
-/// as a mesh has neither.
+/// Barriers in plan, as maps show them. Every ring of an outline is closed. A wall along a line is shown by its foot.
+/// One that was given as a mesh has neither.
 std::vector<NamedLine> barrier_plans(const std::vector<Barrier>& barriers);
 
 }  // namespace frana

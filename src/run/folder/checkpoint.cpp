@@ -239,7 +239,7 @@ std::vector<std::string> CheckpointKeeper::warnings() const {
 }
 
 /// A state that outlives a power cut is worth nothing without the frames that go with it. Each file waits for the disk. Disks
-/// take what is asked of them together in little more time than one.
+/// take several requests together in little more time than one.
 void CheckpointKeeper::flush_new_files() {
     constexpr std::size_t kTogether = 16;
     const auto now = fs::file_time_type::clock::now();

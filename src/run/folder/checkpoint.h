@@ -13,15 +13,16 @@
 
 namespace frana {
 
-/// What a state must agree with to be taken up: version, precision, the case with all its keys, sums of the files
-/// that it names, of bed and particles; and the build, which it need not.
+/// What a state must agree with to be resumed: version, precision, the case with all its keys, and checksums. The
+/// checksums are of the files that the case names, of bed and particles. The build need not agree.
 CheckpointLabels checkpoint_labels(const Scene& scene, const CaseFile& file);
 
-/// Opens the state in a run folder and holds it against `labels`. Throws UserError with the reason when there is
-/// none, it is damaged, or it is of another version, precision or case (the first key that differs, or the file).
+/// Opens the state in a run folder and holds it against `labels`. Throws UserError with the reason when there is none,
+/// when it is damaged, or of another version, precision or case. The reason names the first key that differs, or the
+/// file.
 std::unique_ptr<CheckpointFile> open_checkpoint(const std::filesystem::path& run_dir, const CheckpointLabels& labels);
 
-/// Keeps a run's states in its folder: every `interval` of wall time and at its end.
+/// Saves a run's states in its folder: every `interval` of wall time and at its end.
 class CheckpointKeeper final : public StateKeeper {
 public:
     /// `from`: the state to go on from, or nullptr. An interval of zero: only at the end.
@@ -42,7 +43,7 @@ public:
         void serialize(Archive& archive);
     };
     const Progress& progress() const { return progress_; }
-    /// States that could not be kept, and a build that changed, a sentence each.
+    /// States that could not be saved, and a build that changed, a sentence each.
     std::vector<std::string> warnings() const;
 
 private:

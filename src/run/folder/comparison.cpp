@@ -83,7 +83,7 @@ std::string value(double number, const char* form) {
     return std::isfinite(number) ? fmt::format(fmt::runtime(form), number) : "-";
 }
 
-/// A row of a table with a column for the trace and, when it is known, one for the final state.
+/// A row of a table. It has a column for the trace and, when it is known, one for the final state.
 template <class Score>
 std::string row(const Comparison& c, const char* name, const char* form, const Score& score) {
     std::string text = fmt::format("| {} | {} |", name, value(score(c.trace), form));

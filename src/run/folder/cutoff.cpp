@@ -24,7 +24,7 @@ Cutoff::Cutoff(std::function<void()> last_words) : last_words_(std::move(last_wo
         sigemptyset(&action.sa_mask);
         action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);
         sigaction(kSignals[i], nullptr, &previous_[i]);
-        // Whoever was told to ignore a signal (nohup, a job in the background of a script) goes on ignoring it.
+        // A process told to ignore a signal (nohup, a job in the background of a script) goes on ignoring it.
         if (previous_[i].sa_handler != SIG_IGN) sigaction(kSignals[i], &action, nullptr);
     }
     try {

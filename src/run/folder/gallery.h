@@ -32,8 +32,8 @@ public:
     /// A warning in its place among those of the figures.
     void warn(std::string warning) { wanted_.push_back({{}, nullptr, std::move(warning), false, false}); }
 
-    /// Draws all on so many threads. Returns what was made, in the order in which it was added. Once an end was asked for
-    /// (run/folder/cutoff.h, or `stop_when`) nothing more is begun.
+    /// Draws all on so many threads. Returns what was made, in the order in which it was added. Once an end was
+    /// requested (run/folder/cutoff.h, or `stop_when`) nothing more is begun.
     /// `tell` hears how many are done, of how many; one thread at a time, with none done first.
     using Tell = std::function<void(std::size_t done, std::size_t all)>;
     std::vector<DrawnFigure> draw(int threads, std::vector<std::string>& warnings, const Tell& tell = {});

@@ -8,8 +8,8 @@
 
 namespace frana {
 
-/// What makes a run open well in a GIS, beside its rasters: their styles, results.gpkg and run.qgz. The run is worth more than
-/// these: trouble is a warning.
+/// What makes a run open well in a GIS, besides its rasters: their styles, results.gpkg and run.qgz. The run is worth
+/// more than these: trouble is a warning.
 void leave_gis_files(const Scene& scene, const std::filesystem::path& run_dir,
                      const std::vector<ProductRaster>& rasters, RunRecord& record);
 

@@ -94,8 +94,8 @@ private:
         return field.rfind("peak", 0) == 0 || field == "arrival_time" ? "peak_depth" : "depth";
     }
 
-    /// Shown and outlined are a depth by itself, another field by its own size when `above` asks for it, and else where
-    /// the flow is deep enough.
+    /// A depth is shown and outlined by its own size, another field too when `above` is given. Else the flow's depth
+    /// decides.
     template <class Figure>
     void fill(Figure& figure, const Frame& frame, const Scalar& values) const {
         const bool by_itself = is_depth(values.name) || entry_.above;
@@ -161,7 +161,7 @@ public:
     }
 
 private:
-    /// A surface only where there is a flow under it, and to the first station beside it, so that it closes.
+    /// A surface only where there is a flow under it. It extends to the first station next to it, so that it closes.
     static void hide_dry(const std::vector<double>& bed, std::vector<double>& surface) {
         const std::vector<double> all = surface;
         const auto wet = [&](std::size_t i) { return all[i] > bed[i]; };

@@ -26,7 +26,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Place = std::array<double, 3>;
 
-/// The next 1, 1.5, 2, 3, 5 or 7.5 times a power of ten: an end of a range that one can read off a colour bar.
+/// The next 1, 1.5, 2, 3, 5 or 7.5 times a power of ten. It is an end of a range that one can read off a colour bar.
 double round_up(double value) {
     if (!(value > 0.0)) return 1.0;
     const double power = std::pow(10.0, std::floor(std::log10(value)));
@@ -65,7 +65,7 @@ struct Seen {
     std::map<std::string, double>
         largest;  ///< of depth, speed, cohesion, stress, effective_stress (size of any component), of
                   ///< water_depth, and of bound_depth, which is the rest
-    std::vector<std::pair<double, double>> cohesion;  ///< largest at each time that was looked at [s], [Pa]
+    std::vector<std::pair<double, double>> cohesion;  ///< largest at each sampled time [s], [Pa]
     Extent extent;
 };
 
@@ -125,7 +125,7 @@ void observe_motion(const LoadedFrame& frame, Seen& seen) {
     seen.busy_nodes = std::count_if(depth.begin(), depth.end(), [&](double h) { return h > seen.thin; });
 }
 
-/// Looks at no more than seven frames: ranges need no more, and a long run has hundreds.
+/// Reads no more than seven frames: ranges need no more, and a long run has hundreds.
 Seen observe_frames(const fs::path& run_dir) {
     Seen seen;
     const std::vector<double> times = frame_times(run_dir);
@@ -162,7 +162,7 @@ Json camera(const Place& position, const Place& focal, const Place& up, double h
 
 constexpr double around = 1.12;  ///< 12 % of ground around what was covered
 
-/// Half the extent's size in space, with ground around it [m].
+/// Half the extent's size in 3D, with ground around it [m].
 double reach_of(const Extent& extent) {
     const double size = std::hypot(extent.xmax - extent.xmin, extent.ymax - extent.ymin, extent.zmax - extent.zmin);
     return std::max(0.5 * around * size, 1e-6);
@@ -261,8 +261,8 @@ double most_pressure(const std::vector<LoadedPatch>& patches) {
     return most(std::move(pressures));
 }
 
-/// The output with points and with the largest load on a barrier, with its loads; the last such one where there is never
-/// any.
+/// The output with points and with the largest load on a barrier, with its loads. The last such one where there is
+/// never any.
 Moment3d hardest_moment(const fs::path& run_dir, const Raster& bed) {
     const std::vector<double> times = barrier_times(run_dir), frames = particle_times(run_dir);
     const BarrierMeshes meshes = read_barrier_meshes(run_dir);
@@ -320,8 +320,8 @@ void look_at_impact(const fs::path& run_dir, Json& look) {
     look["camera"]["impact"] = camera(position, focal, {0.0, 0.0, 1.0}, reach, reach);
 }
 
-/// How many times deeper than it is flow is drawn on a profile: a round number, so that the deepest has a fifth of the
-/// relief; no exaggeration where it has that already.
+/// How many times deeper than it is flow is drawn on a profile. It is a round number, so that the deepest has a fifth
+/// of the relief. No exaggeration where it has that already.
 int times_deeper(double relief, double deepest) {
     const double wanted = deepest > 0.0 ? 0.2 * relief / deepest : 1.0;
     int times = 1;
@@ -331,8 +331,8 @@ int times_deeper(double relief, double deepest) {
     return times;
 }
 
-/// Corner of the profile's chart where the terrain leaves most room, in ParaView's numbers: 0 top left, 1 top right,
-/// 2 bottom right, 3 bottom left.
+/// Corner of the profile's chart where the terrain leaves most room. In ParaView's numbers: 0 top left, 1 top right, 2
+/// bottom right, 3 bottom left.
 int free_corner(const std::vector<double>& elevation, double lowest, double highest) {
     constexpr double kWide = 0.35;    // of the chart, a legend's width
     constexpr double kSurface = 0.2;  // of the relief: flow drawn on the terrain
@@ -441,7 +441,7 @@ Json look_at_run(const fs::path& run_dir, const std::string& title) {
         for (const char* name : {"water_depth", "bound_depth"})
             look["range"][name] = {0.0, round_up(seen.largest[name])};
     look["range"]["effective_stress"] = {-round_up(seen.largest["effective_stress"]), 0.0};
-    // Some 400 crosses on the flow, since a narrow one has no room for wide distances; but they must be large enough to
+    // Some 400 crosses on the flow, since a narrow one has no room for wide distances. But they must be large enough to
     // see when all that was ever covered is in view.
     const double across = std::max(seen.extent.xmax - seen.extent.xmin, seen.extent.ymax - seen.extent.ymin);
     const double nodes_apart =

@@ -1,5 +1,5 @@
 #pragma once
-// What ParaView's states have to know of a run: colour ranges for all its times, cameras, sizes of marks.
+// What ParaView's states need of a run: colour ranges for all its times, cameras, sizes of marks.
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>

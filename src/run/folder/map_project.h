@@ -18,9 +18,9 @@ struct MapProject {
     double limit = 0.1;              ///< depth below which flow fades out [m]
 };
 
-/// run.qgz in the run's folder: groups Results (peak depth on), Input (with the terrain as hillshade, under all) and Survey, of
-/// rasters/NAME.tif and the layers of results.gpkg that have shapes. Paths are relative. The same bytes for the same run.
-/// Throws UserError.
+/// run.qgz in the run's folder, of rasters/NAME.tif and the layers of results.gpkg that have shapes. Its groups are
+/// Results (peak depth on), Input (with the terrain as hillshade, under all) and Survey. Paths are relative. The same
+/// bytes for the same run. Throws UserError.
 void write_project(const std::filesystem::path& run_dir, const MapProject& project,
                    const std::vector<ProductRaster>& rasters, const std::vector<ShapeLayer>& layers);
 

@@ -97,7 +97,7 @@ std::string xml(const std::string& text) {
                 escaped += "&quot;";
                 break;
             default:
-                if (static_cast<unsigned char>(c) >= 0x20) escaped += c;  // XML 1.0 knows no others
+                if (static_cast<unsigned char>(c) >= 0x20) escaped += c;  // XML 1.0 has no others
         }
     return escaped;
 }

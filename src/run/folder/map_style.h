@@ -12,8 +12,8 @@ namespace frana {
 /// Text as XML has it.
 std::string xml(const std::string& text);
 
-/// The `<pipe>` of a raster: elevations as hillshade; other values in steps over the range of the report's pictures
-/// (map_range.h), signed ones to either side of grey. Depths below `limit`
+/// The `<pipe>` of a raster. Elevations are a hillshade. Other values have steps over the range of the report's
+/// pictures (map_range.h), signed ones to either side of grey. Depths below `limit`
 /// fade out. Labels have units, kPa for Pa.
 std::string raster_pipe(const ProductRaster& product, const ProductRaster* peak_depth, double limit);
 
@@ -22,7 +22,8 @@ enum class Shapes { lines, outlines, points };
 std::string shape_renderer(Shapes shapes, const Colour& colour, double millimetres, bool dashed = false);
 constexpr double kOutline = 0.5;  ///< width of outlines on a map [mm]
 
-/// rasters/NAME.qml beside each raster, and footprint.qml; QGIS takes them up with what they lie beside. Throws UserError.
+/// rasters/NAME.qml next to each raster, and footprint.qml. QGIS reads them with the files next to them. Throws
+/// UserError.
 void write_styles(const std::filesystem::path& run_dir, const std::vector<ProductRaster>& rasters, double limit);
 
 }  // namespace frana

@@ -26,7 +26,7 @@ constexpr const char *kElevation = "elevation", *kFinalElevation = "final_elevat
 constexpr const char *kGroundAtEnd = "elevation of the bed at the end of the run", *kLying = "lying_depth",
                      *kLiesThere = "depth of what lies there at the end, flow and what has become bed, along gravity";
 
-/// Of a run with erodible.bed_evolves = false, beside a bed_change that is not 0.
+/// Of a run with erodible.bed_evolves = false, together with a bed_change that is not 0.
 constexpr const char* kGroundStayed =
     "elevation of the bed at the end of the run: that of the start, since erodible.bed_evolves is false; bed_change is "
     "not "
@@ -82,7 +82,7 @@ Raster raster_of(const Frame& frame, const ProductRule& rule, const std::string&
     return raster;
 }
 
-/// Not every solver knows it; all others must be there.
+/// Not every solver has it; all others must be there.
 bool needed(const std::string& name) {
     for (const char* other : {"peak_dynamic_pressure", "final_damage", "final_water_depth", "eroded_depth",
                               "deposited_depth", "bed_change"})

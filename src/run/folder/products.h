@@ -21,11 +21,10 @@ struct ProductRaster {
     Raster raster;            ///< NaN: no terrain, or never reached
 };
 
-/// The run's bed as `elevation`: rasters show the flow on it, and it tells where they know of no flow from where there is no
-/// terrain.
+/// The run's bed as `elevation`. Rasters show the flow on it. It tells nodes without flow from nodes without terrain.
 ProductRaster elevation_raster(const Raster& bed);
 
-/// Keeps the rasters of the last frame; they are written once the run is over (write_products).
+/// Stores the rasters of the last frame; they are written once the run is over (write_products).
 class LastFields : public Observer {
 public:
     /// `crs_wkt` goes into every raster.
@@ -39,10 +38,12 @@ private:
     std::vector<ProductRaster>& into_;
 };
 
-/// The rasters of a run as its frame has them: peak_depth, peak_speed, peak_pressure, peak_dynamic_pressure
-/// (when the solver has it), arrival_time, final_depth, final_velocity_x, final_velocity_y, final_damage of what can break,
-/// final_water_depth beside it, eroded_depth, deposited_depth and bed_change of a bed that changes. Negative arrival times and
-/// all nodes without terrain become nodata.
+/// The rasters of a run as its frame has them:
+/// - peak_depth, peak_speed, peak_pressure, peak_dynamic_pressure (when the solver has it), arrival_time;
+/// - final_depth, final_velocity_x, final_velocity_y, final_damage of what can break, final_water_depth of the water
+///   with it;
+/// - eroded_depth, deposited_depth and bed_change of a bed that changes.
+/// Negative arrival times and all nodes without terrain become nodata.
 std::vector<ProductRaster> product_rasters(const Frame& last, const std::string& crs_wkt);
 
 /// Adds final_elevation to rasters with a bed_change: the bed of the start, and where it follows, that change. The solver's
@@ -59,7 +60,7 @@ const ProductRaster* find_lying(const std::vector<ProductRaster>& rasters);
 /// peak_depth.
 std::optional<Raster> ever_covered(const std::vector<ProductRaster>& rasters);
 
-/// The parameters of a friction that differs in space, as the nodes of its bed have them: mu, xi, ...
+/// The parameters of a spatially varying friction, as the nodes of its bed have them: mu, xi, ...
 std::vector<ProductRaster> friction_rasters(const Friction& friction, const Raster& bed);
 
 /// The names that such rasters can have, "mu", "rheology_viscosity", "water_manning_n", and their keys in a case.
@@ -73,9 +74,10 @@ const ProductRaster* find_product(const std::vector<ProductRaster>& rasters, con
 /// Area of a depth raster that is deeper than `limit` [m] [m2].
 double area_deeper(const Raster& depth, double limit);
 
-/// Writes rasters/<name>.tif. Zero is nodata there where the flow never came: peaks, depths, velocities and changes of the
-/// bed outside of peak_depth above 0. Zero inside of it stays. Each has `title`, the software and, when the environment
-/// has SOURCE_DATE_EPOCH, that date: any other would change the bytes of a run that is resumed. Throws UserError.
+/// Writes rasters/<name>.tif. Zero is nodata where the flow never came: outside of peak_depth above 0. This holds for
+/// peaks, depths, velocities and changes of the bed. Zero inside of it stays. Each has `title` and the software. It has
+/// a date when the environment has SOURCE_DATE_EPOCH. Any other would change the bytes of a run that is resumed. Throws
+/// UserError.
 void write_rasters(const std::filesystem::path& run_dir, const std::vector<ProductRaster>& rasters,
                    const std::string& title);
 

@@ -24,14 +24,15 @@ struct ReleaseSource {
 /// All of the case, in its order.
 std::vector<ReleaseSource> release_sources(const CaseFile& file);
 
-/// Layer "release": the polygons of the case with `release`, the number of the table from 0, `area_m2`, `entered_s`, empty where it did
-/// not enter, and `volume_m3` of the whole table where it is known: of what enters later (`late`), and of a single
-/// release at the start (`at_start` [m3]). UserError when a file cannot be read.
+/// Layer "release": the polygons of the case with `release`, the number of the table from 0, and `area_m2`. `entered_s`
+/// is empty where it did not enter. `volume_m3` is that of the whole table where it is known. That is so for what
+/// enters later (`late`), and for a single release at the start (`at_start` [m3]). UserError when a file cannot be
+/// read.
 ShapeLayer release_layer(const std::vector<ReleaseSource>& sources, const std::vector<LateEntry>& late, double at_start,
                          const std::string& crs_wkt);
 
-/// 1 on the pixels of `like` whose middle lies in the outline or on the mask of a release that entered after the start, else 0;
-/// nothing where none did. Those with neither are not known. UserError when a file cannot be read.
+/// 1 on pixels of `like` whose middle lies in the outline or mask of a late release that entered. Else 0.
+/// Nothing where none did. Those with neither are not known. UserError when a file cannot be read.
 std::optional<Raster> released_later_on(const std::vector<ReleaseSource>& sources, const std::vector<LateEntry>& late,
                                         const Raster& like);
 /// The same of all that may enter later, whether they do or not.

@@ -49,7 +49,7 @@ std::string left_text(const RunRecord& r) {
 }
 
 /// "took 12 300 m3 (growth 1.8), 0.7 m deep at most, budget 3e-16": volumes as they are in the flow. What it grew from is
-/// what was released and came in, by what the bed of the start gave: what is left and taken again is not new.
+/// what was released and came in, by what the bed of the start gave. What is left and taken again is not new.
 std::string bed_text(const RunRecord& r) {
     const Status::Bed& bed = r.summary.last.bed;
     const double given = r.summary.first.mass + mass_came_in(r.summary.first, r.summary.last), again = taken_again(r);
@@ -255,13 +255,14 @@ std::string files(const RunRecord& r, const std::vector<Product>& products) {
     return text + "\n";
 }
 
-/// Whether something ran over a barrier, or stood before one of which no more is known, such as a wall along a line.
+/// Whether something ran over a barrier. Of one such as a wall along a line, of which no more is known: whether
+/// something stood before it.
 bool was_reached(const BarrierSummary& b, const BarrierHit& hit) {
     return b.overtopped > 0.0 || (std::isnan(hit.area) && std::isfinite(b.run_up));
 }
 
-/// The barriers that a report has rows for, in the case's order: all, or of many the most deeply covered ones. One whose depth
-/// is not known comes before them if it was reached.
+/// The barriers that a report has rows for, in the case's order. They are all, or of many the most deeply covered ones.
+/// One whose depth is not known comes before them if it was reached.
 std::vector<std::size_t> shown_barriers(const RunRecord& r) {
     std::vector<std::size_t> shown(r.barriers.size());
     std::iota(shown.begin(), shown.end(), std::size_t{0});
@@ -277,7 +278,7 @@ std::vector<std::size_t> shown_barriers(const RunRecord& r) {
     return shown;
 }
 
-/// Structured columns meet barriers as walls whose pushes are known together only.
+/// Structured columns meet barriers as walls, and only the sum of their forces is known.
 std::string barriers_of_structure(const RunRecord& r) {
     std::string text = "## Barriers\n\n";
     for (const BarrierSummary& b : r.barriers) text += fmt::format("- {}\n", b.name);
@@ -291,7 +292,7 @@ std::string barriers_of_structure(const RunRecord& r) {
                of.pushed[0], of.pushed[1]);
 }
 
-/// `hit`: what the rasters tell of the flow at its faces; of a wall along a line or a mesh nothing.
+/// `hit`: what the rasters tell of the flow at its faces. Of a wall along a line or a mesh they tell nothing.
 std::string barrier_row(const BarrierSummary& b, const BarrierHit& hit) {
     const bool reached = std::isfinite(b.run_up), forces = b.blur > 0.0;
     const auto or_dash = [](double value, const char* unit) {
@@ -308,7 +309,7 @@ std::string barrier_row(const BarrierSummary& b, const BarrierHit& hit) {
                        b.overtopped);
 }
 
-/// Without what is round-off beside the largest entry.
+/// Without what is round-off next to the largest entry.
 Vec3 without_round_off(const Vec3& v) {
     const double least = 1e-9 * v.cwiseAbs().maxCoeff();
     return v.unaryExpr([&](double entry) { return std::abs(entry) < least ? 0.0 : entry; });

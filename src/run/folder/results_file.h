@@ -14,7 +14,8 @@ namespace frana {
 /// - barriers: barrier_layer() (barrier_results.h);
 /// - footprint: outlines of what was ever deeper than the footprint depth; outlines: of 0.5, 1, 2 and 5 m (depth_m, area_m2);
 /// - release: outlines of the pixels where material stood at the start (area_m2);
-/// - gauges, profiles: the largest peak_depth_m, peak_speed_m_s and peak_dynamic_pressure_Pa (density times speed squared) of the pixels
+/// - gauges, profiles: the largest peak_depth_m, peak_speed_m_s and peak_dynamic_pressure_Pa (density times speed
+///   squared) of the pixels
 ///   that they lie on, and the earliest arrival_s there;
 /// - sections: volume_m3 that passed, peak_discharge_m3_s and peak_s when that was;
 /// - survey: the surveyed footprint.

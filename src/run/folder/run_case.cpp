@@ -22,7 +22,7 @@ namespace {
 
 void shorten(Scene& scene, const std::optional<double>& until) {
     if (!until) return;
-    if (!(*until > 0.0))  // NaN too: a program may ask for it
+    if (!(*until > 0.0))  // NaN too: a program may give it
         throw UserError(
             fmt::format("--until: found {:.10g}; expected a time above 0 and at most time.end = {:.10g} s; give one",
                         *until, scene.end));
@@ -49,7 +49,7 @@ void keep_case(const CaseFile& file, const fs::path& run_dir) {
 }
 
 /// For pictures, which are drawn again when the files that the case names may have gone. A table of the case may have
-/// made several barriers, but then it is no mesh: those with a mesh come in the same order here and there.
+/// made several barriers, but then it is no mesh. Those with a mesh come in the same order here and there.
 void keep_meshes(const CaseFile& file, const Scene& scene, const fs::path& run_dir) {
     BarrierMeshes meshes(scene.barriers.size());
     std::size_t i = 0;
@@ -87,7 +87,7 @@ CaseRun::CaseRun(const CaseFile& file, const RunWishes& wishes)
     if (wishes.resume) kept = open_checkpoint(run_dir_, labels);
     simulation_ = make_simulation(scene_, wishes.resume ? Start::resumed : Start::placed);
 
-    // Only now is the folder touched: what lies there survives a case that cannot run.
+    // Only now is the folder changed: what lies there survives a case that cannot run.
     if (!wishes.resume) {
         if (!lock_) lock_.emplace(run_dir_);
         prepare_run_folder(run_dir_, inputs, overwrite);

@@ -1,5 +1,5 @@
 #pragma once
-// A case on its way from its file to a finished run folder: what `frana run` and the Python module do alike.
+// A case on its way from its file to a finished run folder. `frana run` and the Python module both use it.
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -18,7 +18,7 @@
 
 namespace frana {
 
-/// What is asked of a run beside its case.
+/// What a run needs besides its case.
 struct RunWishes {
     std::filesystem::path out;      ///< folder of the run; empty: out/<case name>
     std::vector<std::string> sets;  ///< "key=value" overrides that the case was read with
@@ -39,7 +39,8 @@ public:
     Simulation& simulation() { return *simulation_; }
     const RunRecord& record() const { return record_; }
 
-    /// Once: the run, with all that it leaves (carry_out). `more` look on besides. A failure is in the record's summary.
+    /// Once: the run, with all that it leaves (carry_out). `more` are further observers. A failure is in the record's
+    /// summary.
     RunRecord carry_out(const Interrupt& interrupt, Progress& progress, Observers more = {},
                         std::vector<ProductRaster>* rasters = nullptr);
 

@@ -7,8 +7,8 @@
 
 namespace frana {
 
-/// figures/profile_<name>.png: surface, depth and velocity along a line at the start, at the end, and between
-/// (at source.time when it is given).
+/// figures/profile_<name>.png: surface, depth and velocity along a line. It shows the start, the end, and between
+/// (source.time when given).
 void add_profile(const FigureSource& source, const std::string& name, Gallery& gallery);
 
 /// figures/gauges_flow.png: depth and speed of all gauges over time; nothing without gauges.

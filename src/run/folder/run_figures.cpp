@@ -71,7 +71,7 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
     return map;
 }
 
-/// What the flow took of its bed and left there, loss blue and gain red, wherever flow or a change is.
+/// What the flow took of its bed and left there, loss blue and gain red. It is shown wherever flow or a change is.
 void add_change_map(const FigureSource& source, Gallery& gallery) {
     const ProductRaster *change = find_product(source.rasters, "bed_change"),
                         *peak = find_product(source.rasters, "peak_depth");

@@ -40,17 +40,17 @@ struct FigureSource {
 /// All figures but films.
 void add_figures(const FigureSource& source, Gallery& gallery);
 
-/// About how long the pictures of a case that has `outputs` outputs take on so many threads [s]; 0 where it asks for none. A
-/// forecast for people who wait: it takes each picture to be of the usual size.
+/// About how long the pictures of a case with `outputs` outputs take on so many threads [s]. 0 where it has none. A
+/// forecast for users: it takes each picture to be of the usual size.
 double expected_drawing_seconds(const Scene& scene, Index outputs, int threads);
 
-/// A map of one raster on the terrain: figures/map_<name>.png. `what` is its name for people, `extent` the depth
-/// that says where the flow is, for a raster that is no depth (nullptr: where the raster is above zero).
+/// A map of one raster on the terrain: figures/map_<name>.png. `what` is its name in plain words. `extent` is the depth
+/// that says where the flow is, for a raster that is no depth. nullptr: where the raster is above zero.
 void add_map(const FigureSource& source, const ProductRaster& product, const std::string& what,
              const ProductRaster* extent, Gallery& gallery);
 
-/// figures/compare.png: the simulated extent (all pixels of peak_depth above footprint_depth) and the surveyed one;
-/// nothing without a survey, the terrain or the peak depth.
+/// figures/compare.png: the simulated extent (all pixels of peak_depth above footprint_depth) and the surveyed one.
+/// Nothing without a survey, the terrain or the peak depth.
 void add_overlay(const FigureSource& source, Gallery& gallery);
 
 }  // namespace frana

@@ -29,8 +29,8 @@ std::vector<Index> spread_frames(Index count, Index most) {
 /// Whether depth in frames stands for what has become bed too.
 bool shows_bed(const FigureSource& source) { return find_product(source.rasters, "lying_depth") != nullptr; }
 
-/// The depth of an output with the survey, without a title. What has become bed counts. Frames may show a smaller part of the terrain than the last
-/// one. UserError when the frame has none on the terrain's nodes.
+/// The depth of an output with the survey, without a title. What has become bed counts. Frames may show a smaller part
+/// of the terrain than the last one. UserError when the frame has none on the terrain's nodes.
 MapFigure depth_map(const FigureSource& source, Index number) {
     LoadedFrame frame = read_frame(source.run_dir, number, {"depth", "deposited_depth"});
     const auto box = box_of(source.bed.geometry, frame.grid);
@@ -47,7 +47,7 @@ MapFigure depth_map(const FigureSource& source, Index number) {
     return map;
 }
 
-/// Draws every frame twice over: once to know what all of them show, then for good. They need not fit the memory
+/// Draws every frame twice over: once to find the range of all of them, then for good. They need not fit the memory
 /// together.
 bool draw_frames(const FigureSource& source, const std::vector<double>& times, const fs::path& film,
                  std::string& why_not) {

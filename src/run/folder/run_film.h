@@ -10,16 +10,16 @@ namespace frana {
 
 struct LoadedFrame;
 
-/// Adds what has become bed to a frame's depth, where it knows of any: films would show it vanish.
+/// Adds what has become bed to a frame's depth, where it has any: films would show it vanish.
 void add_deposit(LoadedFrame& frame);
 
-/// figures/filmstrip_depth.png, the depth at up to six output times side by side; nothing for a run without frames on
+/// figures/filmstrip_depth.png, the depth at up to six output times side by side. Nothing for a run without frames on
 /// the grid.
 void add_filmstrip(const FigureSource& source, Gallery& gallery);
 
-/// figures/film_depth.mp4 or .gif (`kind`: "mp4" or "gif"), the depth at every output time in one view and one range of
-/// colours, about eight seconds long with 2 to 25 pictures a second. One warning and no film without the program
-/// ffmpeg, frames on the grid, or where pictures are switched off.
+/// figures/film_depth.mp4 or .gif (`kind`: "mp4" or "gif"): the depth at every output time. View and range of colours
+/// are the same throughout. It takes about eight seconds, with 2 to 25 pictures a second. One warning and no film
+/// without the program ffmpeg, frames on the grid, or where pictures are switched off.
 void add_film(const FigureSource& source, const std::string& kind, Gallery& gallery);
 
 /// A film of `count` pictures, the k-th drawn by `draw(k, png)`, about eight seconds long. False with a reason when one

@@ -97,7 +97,7 @@ std::vector<fs::path> folders_of(const fs::path& run_dir, const ProductKind& kin
     return found;
 }
 
-/// To make one of a text takes longer than to match a folder's names with it; they are few, and asked for again and again.
+/// To make one of a text takes longer than to match a folder's names with it. They are few and often used.
 const std::regex& pattern_of(const ProductKind& kind) {
     static thread_local std::map<std::string, std::regex> known;
     const auto found = known.find(kind.pattern);
@@ -148,8 +148,8 @@ std::vector<fs::path> files_named_like_products(const fs::path& run_dir) {
     return all;
 }
 
-/// Files that are named like products and are not the run's: path relative to the run folder -> last change
-/// [ns of the file clock]. One that has changed since is the run's: it was replaced.
+/// Files that are named like products and are not the run's. Path relative to the run folder -> last change [ns of the
+/// file clock]. One that has changed since is the run's: it was replaced.
 using OtherFiles = std::map<std::string, std::int64_t>;
 
 bool same_file(const fs::path& a, const fs::path& b) {
@@ -223,7 +223,7 @@ std::vector<fs::path> files_in_the_way(const fs::path& run_dir, const std::vecto
     for (std::size_t i = 0; i < inputs.size(); ++i)
         for (const fs::path& file : found) {
             if (!same_file(file, inputs[i])) continue;
-            if (i == 0 && same_file(file, run_dir / "case.toml")) continue;  // is kept as it is
+            if (i == 0 && same_file(file, run_dir / "case.toml")) continue;  // stays as it is
             throw UserError(
                 fmt::format("{}: the case reads this file and a run writes one of its name; expected a "
                             "folder without the case's inputs; choose another one with --out",
@@ -254,7 +254,7 @@ std::string names_of(const fs::path& run_dir, const std::vector<fs::path>& files
 
 /// A product that a killed process was writing when it died has a name like ".peak_depth.tmp4711.tif".
 void remove_half_written(const fs::path& run_dir) {
-    // SQLite, which writes GeoPackages, has files of its own beside one
+    // SQLite, which writes GeoPackages, has files of its own next to one
     static const std::regex half_written("\\.(.*)\\.tmp\\d+(\\..*?)?(-journal|-wal|-shm)?");
     std::error_code ignored;
     for (const ProductKind& kind : product_kinds()) {

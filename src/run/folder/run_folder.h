@@ -1,6 +1,5 @@
 #pragma once
-// The folder of a run: which files frana writes there, which are there now, and how to make room for new
-// ones.
+// The folder of a run: which files frana writes there, and which are there now. Also how to make room for new ones.
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -26,7 +25,7 @@ struct Product {
 };
 
 /// The run's files that are in the folder now, in the order of product_kinds(), names sorted. A file is the run's
-/// when its run.json lists it or, while the run goes on, when it has come or changed since the run began.
+/// when its run.json lists it. While the run goes on, a file that has come or changed since it began is too.
 std::vector<Product> products_in(const std::filesystem::path& run_dir);
 
 /// The files behind these, with the folder's name.
@@ -38,14 +37,14 @@ std::vector<std::string> files_made(const std::filesystem::path& run_dir);
 /// Whether a run may take the place of an earlier one.
 enum class Overwrite { no, yes };
 
-/// Refuses a folder where a run would replace files: those of an earlier run (unless `overwrite`), files that no
-/// run left there but whose names each run writes, and files that the case itself reads. Touches nothing. `inputs` begins with the case
-/// file. Throws UserError.
+/// Refuses a folder where a run would replace files. These are files of an earlier run (unless `overwrite`), and files
+/// that the case itself reads. So are files that no run left there but whose names each run writes. Touches nothing.
+/// `inputs` begins with the case file. Throws UserError.
 void require_room_for_run(const std::filesystem::path& run_dir, const std::vector<std::filesystem::path>& inputs,
                           Overwrite overwrite);
 
-/// Refuses a folder that `what` ("an ensemble") has not begun to work in, as its own file `mark` would show, and in which
-/// files of these names lie, or files in folders of these names: it would replace them. Throws UserError.
+/// Refuses a folder where `what` ("an ensemble") would replace files: those of these names, or in folders of these
+/// names. If `what` has begun to work there, as its own file `mark` shows, the folder is not refused. Throws UserError.
 void require_no_others(const std::filesystem::path& dir, const std::string& mark, const std::vector<std::string>& names,
                        const std::string& what);
 
@@ -59,13 +58,13 @@ void prepare_run_folder(const std::filesystem::path& run_dir, const std::vector<
                         Overwrite overwrite = Overwrite::no);
 
 /// Removes what a run leaves at its end (report, rasters, figures, ...) and half-written files of a run that was
-/// killed; series and tables stay, for the run to go on with. Throws UserError as above.
+/// killed. Series and tables stay, for the run to go on with. Throws UserError as above.
 void clear_for_resume(const std::filesystem::path& run_dir);
 
 /// Removes what a process was writing when it was cut off: half-written files and the pictures of unfinished films.
 void remove_half_written(const std::filesystem::path& run_dir);
 
-/// To call once work on the folder of a finished run is done: adds what has come since to the list in its run.json. A
+/// To call once work on the folder of a finished run is done. Adds what has come since to the list in its run.json. A
 /// run.json without such a list is left as it is.
 std::function<void()> adding_to_files(const std::filesystem::path& run_dir);
 

@@ -14,7 +14,7 @@ namespace frana {
 namespace fs = std::filesystem;
 namespace {
 
-/// Two works at once; the second one is not kept from its turn by a failure of the first.
+/// Two works at once. The second one has its turn even after a failure of the first.
 class Both final : public InsituWork {
 public:
     Both(std::unique_ptr<InsituWork> one, std::unique_ptr<InsituWork> other)

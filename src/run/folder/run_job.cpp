@@ -198,14 +198,14 @@ void close_record(RunRecord& record, const fs::path& run_dir) {
     write_text(run_dir / "run.json", run_json(record));  // last: until then it says which files are not the run's
 }
 
-/// Where the address space is limited, writers that ask for room beforehand do so one after the other.
+/// Where the address space is limited, writers that allocate room beforehand do so one after the other.
 int threads_for_files() {
     rlimit limit{};
     const bool known = getrlimit(RLIMIT_AS, &limit) == 0;
     return known && limit.rlim_cur == RLIM_INFINITY ? omp_get_max_threads() : 1;
 }
 
-/// Of one phase all is solid, but of a bed law that knows the share of grains.
+/// Of one phase all is solid, except with a bed law that has the share of grains.
 double solid_share(const Scene& scene) {
     const auto* granular = std::get_if<bed::Pouliquen>(&scene.bed_law);
     return granular ? granular->solid_fraction : 1.0;
@@ -228,8 +228,8 @@ void note_cutoff(RunRecord& record, const fs::path& run_dir) {
         fmt::format("interrupted while pictures were drawn; `frana figures {}` draws all of them", run_dir.string()));
 }
 
-/// The pictures that the case asks for. An end that is asked for meanwhile leaves a whole run with fewer of them; where the
-/// run does not own the signals they go on to whoever does.
+/// The pictures of the case. A request to end meanwhile leaves a whole run with fewer of them. Where the run does not
+/// own the signals they go on to their owner.
 void draw(const FigureSource& source, const Output& output, const FlowFrames& frames, const Interrupt& interrupt,
           Progress& progress, RunRecord& record) {
     const fs::path& run_dir = source.run_dir;

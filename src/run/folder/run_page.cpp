@@ -143,7 +143,7 @@ std::vector<PageBarrier> barriers_of(const FigureSource& source) {
     return barriers;
 }
 
-/// The largest of what frames hold; of the peaks, where the run has them, so that both have the same colours.
+/// The largest of what frames hold. Of the peaks, where the run has them, so that both have the same colours.
 PageTop top_of(const std::vector<PageDrape>& drapes, const char* name, double of_frames) {
     for (const PageDrape& drape : drapes)
         if (drape.name == name) return {drape.high, of_frames > drape.high};

@@ -1,5 +1,5 @@
 #pragma once
-// figures/view.html, the page of a run (run/web/web_page.h), from what the run knows or has left.
+// figures/view.html, the page of a run (run/web/web_page.h), from the run's data and files.
 #include <string>
 #include <vector>
 
@@ -8,10 +8,10 @@
 
 namespace frana {
 
-/// Whether a case asks for the page: format "web".
+/// Whether a case has the page: format "web".
 bool asks_for_page(const CaseFile& file);
 
-/// Refuses a case that asks for it in a build that cannot make it. UserError.
+/// Refuses a case with that format in a build that cannot make it. UserError.
 void check_page(const CaseFile& file);
 
 /// Depth and speed of the frames that the run wrote for ParaView; none without them.

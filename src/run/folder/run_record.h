@@ -45,9 +45,9 @@ struct RunRecord {
     double release_volume = 0.0;                                     ///< [m^3]
     double end = 0.0;                                                ///< planned [s]
     double whole_end = 0.0;                                          ///< of the case, without --until [s]
-    bool netcdf = false;                                             ///< the case asks for series.nc
-    bool page = false;                                               ///< figures/view.html is wanted
-    bool pictures_cut_off = false;                                   ///< an end was asked for while they were drawn
+    bool netcdf = false;                                             ///< the case has series.nc
+    bool page = false;                                               ///< figures/view.html is to be made
+    bool pictures_cut_off = false;                                   ///< an end was requested while they were drawn
     double footprint_depth = 0.1;                                    ///< [m]
     double footprint_area = 0.0;                                     ///< ever deeper than footprint_depth [m2]
     double peak_depth = 0.0, peak_speed = 0.0, peak_pressure = 0.0;  ///< of the rasters [m], [m/s], [Pa]
@@ -68,7 +68,7 @@ struct RunRecord {
     std::vector<BarrierSummary> barriers;
     std::vector<BarrierHit> barrier_hits;  ///< in their order; none before the end of the run
     std::vector<SectionSummary> sections;
-    std::vector<FrictionPart> friction;  ///< where it differs in space
+    std::vector<FrictionPart> friction;  ///< where it varies spatially
     bool friction_of_part = false;       ///< their areas are those of the part of the terrain that the run held
     CheckpointKeeper::Progress checkpoints;
     Extras extras;
@@ -98,7 +98,7 @@ std::string run_json(const RunRecord& record);
 /// report.md as text: the run on one page. Files and figures are those that lie in the folder now.
 std::string report_markdown(const RunRecord& record, const std::filesystem::path& run_dir);
 
-/// The ten lines at the end of a run on the console: figures of the result, and where to look.
+/// The ten lines on the console at the end of a run: figures of the result, where to find more.
 std::string closing_lines(const RunRecord& record, const std::filesystem::path& run_dir);
 
 }  // namespace frana

@@ -189,7 +189,7 @@ RunState state_of_vtk(const fs::path& run_dir, double time) {
     return state;
 }
 
-/// A run that goes on changes the tables of run.h5 while they are read: another look a moment later meets them whole.
+/// A run that goes on changes the tables of run.h5 while they are read. A second try a moment later finds them whole.
 template <class Read>
 auto between_writes(Read&& read) {
     for (int look = 0; look < 9; ++look) {

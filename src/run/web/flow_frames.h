@@ -1,5 +1,5 @@
 #pragma once
-// The frames of a page, kept while a run goes on.
+// The frames of a page, stored while a run goes on.
 #include <memory>
 #include <vector>
 
@@ -9,15 +9,15 @@
 namespace frana {
 
 /// The outputs of a run in order, not more of them than fit a page. When they become too many every second one goes, so
-/// that those that stay are evenly spread; the last one always stays.
+/// that the rest is evenly spread. The last one always stays.
 class FlowFrames {
 public:
-    /// `footprint_depth`: what is thinner than a hundredth of it is not kept [m]. `most`: bytes of all frames.
+    /// `footprint_depth`: what is thinner than a hundredth of it is not stored [m]. `most`: bytes of all frames.
     explicit FlowFrames(double footprint_depth, std::size_t most = 14'000'000)
         : wet_(footprint_depth / 100.0), most_(most) {}
     void add(Index number, double time, const FlowFields& flow);
     const std::vector<PackedFrame>& frames() const { return frames_; }
-    Index every() const { return every_; }  ///< outputs for one that is kept: 1, 2, 4, ...
+    Index every() const { return every_; }  ///< outputs for one that is stored: 1, 2, 4, ...
     void serialize(Archive& archive);
 
 private:

@@ -11,7 +11,7 @@ namespace frana {
 namespace {
 
 constexpr double kCodes = 65534.0;  // from the lowest to the highest value
-// Noise of speeds fills a page and tells nobody anything.
+// Noise of speeds fills a page and tells nothing.
 constexpr double kDepthSteps = 255.0, kSpeedSteps = 63.0;
 
 GridGeometry blocks_of(const GridGeometry& fine, Index k) {

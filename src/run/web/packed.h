@@ -8,16 +8,16 @@
 
 namespace frana {
 
-/// A raster in steps of one height: value = low + step (code - 1); code 0 is no value. Each code is kept as the
-/// difference from what its neighbours to the west and south let expect, modulo 65536, signs in the lowest bit; first all
-/// high bytes, then all low ones; deflated.
+/// A raster in steps of one height: value = low + step (code - 1); code 0 is no value. Each code is predicted from its
+/// neighbours to the west and south. The difference is stored modulo 65536, with the sign in the lowest bit. First come
+/// all high bytes, then all low ones, deflated.
 struct PackedRaster {
     GridGeometry grid;
     double low = 0.0, step = 1.0;
     std::vector<std::uint8_t> bytes;
 };
 
-/// The raster with at most 65535 steps, of `finest` or more; what is between two steps is rounded to the nearer one.
+/// The raster with at most 65535 steps, of `finest` or more. What is between two steps is rounded to the nearer one.
 PackedRaster packed(const Raster& raster, double finest);
 /// It back, to half a step.
 Raster unpacked(const PackedRaster& raster);
@@ -27,7 +27,7 @@ Raster unpacked(const PackedRaster& raster);
 struct PackedFrame {
     Index number = 0;                     ///< of the output
     double time = 0.0;                    ///< [s]
-    GridGeometry grid;                    ///< of the pixels kept: none where nothing is wet
+    GridGeometry grid;                    ///< of the stored pixels: none where nothing is wet
     double deepest = 0.0, fastest = 0.0;  ///< top: that the last step ends at [m], [m/s]
     bool has_speed = false;
     std::vector<std::uint8_t> bytes;  ///< deflated: depths, then speeds

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr Index kMostTerrain = 500'000;   // nodes of the surface: more are no smoother to look at
+constexpr Index kMostTerrain = 500'000;   // nodes of the surface: more make no smoother picture
 constexpr Index kMostPixels = 1'000'000;  // of a drape
 constexpr std::size_t kMostPoints = 600;  // of a curve
 
@@ -252,7 +252,7 @@ std::string script_safe(const Json& json) {
 /// A text between tags, in UTF-8.
 std::string html_safe(const std::string& text) {
     std::string safe;
-    // JSON's writer knows how to replace what is no UTF-8.
+    // JSON's writer can replace what is no UTF-8.
     const std::string valid = Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
     for (const char c : valid)
         safe += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);

@@ -1,5 +1,6 @@
 #pragma once
-// A page to look at a flow, or at what many runs say of it, on its terrain: one HTML file, which asks for nothing from anywhere.
+// A page that shows a flow on its terrain, or what many runs say of it. It is one HTML file, which loads nothing from
+// anywhere.
 #include <memory>
 #include <optional>
 #include <string>
@@ -48,7 +49,7 @@ struct PageCurves {
 };
 
 /// How likely more than each of some thresholds is, and what shares of the runs do not exceed. A row of a table belongs to a
-/// place: a pixel of PageRuns::reached that has a value, in the order of its values.
+/// place. That is a pixel of PageRuns::reached that has a value, in the order of its values.
 struct PageLadder {
     std::string name, label, unit;   ///< "peak_depth", "peak depth", "m"
     std::vector<double> thresholds;  ///< ascending, in `unit`
