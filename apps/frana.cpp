@@ -299,7 +299,7 @@ void add_stress(CLI::App& app, StressOptions& options, Action& action) {
     command->add_option(
         "--model", options.models,
         "what carries the scenes: all (the default), or with commas between them depth_averaged, solid_flow "
-        "(points in space), structured, water, mixture (structured columns and water), staged, flood (water alone)");
+        "(3D points), structured, water, mixture (structured columns and water), staged, flood (water alone)");
     numeric(command->add_option("--seed", options.seed, "of the series; default 1"), kFromZero);
     numeric(command->add_option("--scenes", options.scenes, "at most so many; default as many as the time allows"),
             kAboveZero);

@@ -246,7 +246,7 @@ std::string stage_text(const Scene& scene) {
                      std::ceil((stage.until.value_or(scene.end) - stage.from) * sound_speed / (stage.cfl * stage.cell)),
                  points = most_points(scene);
     return fmt::format(
-        "stage       points in space from {:.6g} s to {:.6g} s, at most about {:.3g} of them, {:.3g} MB; {:.0f} steps "
+        "stage       3D points from {:.6g} s to {:.6g} s, at most about {:.3g} of them, {:.3g} MB; {:.0f} steps "
         "or more with "
         "sound at {:.3g} m/s, {} on one core if all are there, assuming {:.0f} ns per point and step\n",
         stage.from, stage.until.value_or(scene.end), points, points * bytes_per_point / 1e6, steps, sound_speed,

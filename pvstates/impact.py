@@ -1,4 +1,4 @@
-"""Points in space in the colours of their speed, barriers in those of the pressure on them, and the terrain."""
+"""3D points in the colours of their speed, barriers in those of the pressure on them, and the terrain."""
 import os
 
 from paraview.simple import PVDReader, Show, Threshold, WarpByScalar
@@ -16,7 +16,7 @@ def build(run_dir):
     particles = show_points(run_dir, view, look)
     show_barriers(run_dir, view, look)
     scene.clock(view, particles)
-    scene.heading(view, "Points in space, pressure on barriers")
+    scene.heading(view, "3D points, pressure on barriers")
     scene.at_time([view], look["impact_time"])
     return layout
 
@@ -24,7 +24,7 @@ def build(run_dir):
 def show_points(run_dir, view, look):
     """Discs as large as the points in the middle; columns, which have model 0, are left out."""
     particles = PVDReader(registrationName="particles", FileName=os.path.join(run_dir, "particles.pvd"))
-    points = Threshold(registrationName="points in space", Input=particles)
+    points = Threshold(registrationName="3D points", Input=particles)
     points.Scalars = ["POINTS", "model"]
     points.LowerThreshold, points.UpperThreshold, points.ThresholdMethod = 0.5, 1.5, "Between"
     display = Show(points, view)

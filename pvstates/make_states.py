@@ -2,7 +2,7 @@
 
     pvbatch make_states.py RUN_DIR [STATE...] [--out FOLDER]
 
-RUN_DIR is a run that has everything (stress, a profile, a survey; for the state impact, points in space and a
+RUN_DIR is a run that has everything (stress, a profile, a survey; for the state impact, 3D points and a
 barrier; for structure, a case with [material.structure]; for phases, one with [water]; for probability, the folder of
 an ensemble); which one does not matter, for all that belongs to the run becomes a slot: `frana run` and `frana states` put
 there what src/run/folder/states.h says. To know what belongs to the run, each number and text of its look is replaced by

@@ -1,4 +1,4 @@
-// Friction that differs in space, under columns that hold together, grains beside water, and points in 3D.
+// Friction that varies from place to place, under columns that hold together, grains beside water, and points in 3D.
 #include <algorithm>
 #include <cmath>
 #include <optional>

@@ -61,7 +61,7 @@ public:
         const bool moving = status_.max_speed > query.faster_than;
         return {status_.mass, moving ? status_.mass : 0.0, status_.max_speed, 0};
     }
-    std::vector<PhaseTime> timings() const override { return {{"deposit", 0.25}, {"kick", 0.5}}; }
+    std::vector<PhaseTime> timings() const override { return {{"deposit", 0.25}, {"grid update", 0.5}}; }
     void serialize(Archive& archive) override {
         frana::serialize(archive, "status", status_);
         for (const auto& [name, peak] : {std::pair{"depth", &peak_depth_},

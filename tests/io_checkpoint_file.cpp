@@ -26,7 +26,7 @@ struct Things {
     double number = 0.1;
     Index count = 7;
     Status status;
-    std::vector<PhaseTime> phases{{"deposit", 0.5, 0.25, 3}, {"kick", 1.5, 0.0, 4}};
+    std::vector<PhaseTime> phases{{"deposit", 0.5, 0.25, 3}, {"grid update", 1.5, 0.0, 4}};
 
     void serialize(Archive& archive) {
         const Archive::Part part(archive, "things");
@@ -89,7 +89,7 @@ TEST_CASE("a state comes back from its file bit for bit", "[resume]") {
     CHECK(out.status.impulse == in.status.impulse);
     CHECK(out.status.front == 17.25);
     REQUIRE(out.phases.size() == 2);
-    CHECK(out.phases[1].name == "kick");
+    CHECK(out.phases[1].name == "grid update");
     CHECK(out.phases[0].calls == 3);
     CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 1);  // nothing beside it
 }

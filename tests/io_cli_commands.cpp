@@ -130,7 +130,7 @@ TEST_CASE("check and run refuse 3D points that no memory holds", "[cli]") {
     for (const char* command : {"check CASE", "run CASE"}) {
         const Outcome outcome = scene.frana(command);
         CHECK(outcome.code == 2);
-        CHECK_THAT(outcome.err, Contains("stage.spacing: found 1.8e+12 points in space"));
+        CHECK_THAT(outcome.err, Contains("stage.spacing: found 1.8e+12 3D points"));
         CHECK_THAT(outcome.err, Contains("GB that are free; give a larger spacing or a smaller window"));
         CHECK_THAT(outcome.out, !Contains("ready to run"));
     }

@@ -53,7 +53,7 @@ public:
                           "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"
                           "[material.bed]\nlaw = \"coulomb\"\nmu = 0.1\n[time]\nend = 4\n[output]\nevery = 2\n"
                           "formats = [\"vtk\", \"geotiff\", \"xdmf\"]\n");
-        // The same with friction in space, loose ground and trees, on rasters of 100 m and 20 m.
+        // The same with friction that varies, loose ground and trees, on rasters of 100 m and 20 m.
         spec.columns = spec.rows = 300;
         spec.transform = {kWest, 100.0, 0.0, kSouth + kPixels * kCell, 0.0, -100.0};
         spec.value = [](int column, int row) { return 0.0625 * (1 + (column + 2 * row) % 4); };

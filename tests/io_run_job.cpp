@@ -138,7 +138,7 @@ TEST_CASE("run.json has the contract's keys with the simulation's numbers") {
     CHECK(energy["potential"] == last.potential);
     CHECK(energy["dissipated"] == last.dissipated);
     CHECK(energy["residual"].get<double>() == Approx(-8.0).epsilon(1e-6));
-    CHECK(record["wall_seconds"]["solver"]["kick"] == 0.5);
+    CHECK(record["wall_seconds"]["solver"]["grid update"] == 0.5);
     for (const char* part : {"history", "gauges", "profiles", "frame", "rasters", "figures"})
         CHECK(record["wall_seconds"]["output"].contains(part));
     CHECK(record["wall_seconds"]["output_share"].get<double>() > 0.0);

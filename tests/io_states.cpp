@@ -249,7 +249,7 @@ TEST_CASE("a state that the run lacks files for is not written, and asking for i
     CHECK_THROWS_WITH(
         states_command({options.out, {"stress"}}),
         Contains("no state \"stress\": the frames of grid.pvd have no array stress") && Contains("material.rheology"));
-    CHECK_THROWS_WITH(states_command({options.out, {"impact"}}), Contains("no points in space stood before a barrier"));
+    CHECK_THROWS_WITH(states_command({options.out, {"impact"}}), Contains("no 3D points stood before a barrier"));
     CHECK_THROWS_WITH(states_command({options.out, {"structure"}}),
                       Contains("have no array damage; give a [material.structure]"));
     CHECK_THROWS_WITH(states_command({options.out, {"phases"}}), Contains("have no array water_depth; give a [water]"));

@@ -114,7 +114,7 @@ def files_of(source):
 
 def arrays_in_sources():
     names = set()
-    moment = simple.GetAnimationScene().AnimationTime  # points in space are not there from the start
+    moment = simple.GetAnimationScene().AnimationTime  # 3D points are not there from the start
     for source in simple.GetSources().values():
         source.UpdatePipeline(moment)
         information = source.GetDataInformation()

@@ -78,7 +78,7 @@ TEST_CASE("bench writes the contract's keys with finite numbers above zero", "[b
     CHECK(numbers(json, "1").size() == 2);  // both triads, one thread and two
     CHECK(numbers(json, "2").size() == 2);
     CHECK(occurrences(json, "\"depth_averaged/full/double\"") == 4);  // two sizes, one thread and two
-    CHECK(occurrences(json, "\"depth_averaged/kick_and_friction/double\"") == 4);
+    CHECK(occurrences(json, "\"depth_averaged/grid_update/double\"") == 4);
 }
 
 TEST_CASE("The table of bench tells how much faster two threads are, phase by phase", "[bench]") {
@@ -96,7 +96,7 @@ TEST_CASE("The table of bench tells how much faster two threads are, phase by ph
         CHECK(std::stod(found[1]) ==
               Approx(one->cost.full().wall_ns / two->cost.full().wall_ns).margin(0.006));  // two digits
     }
-    CHECK(occurrences(part, "depth_averaged/kick_and_friction/double") == 2);
+    CHECK(occurrences(part, "depth_averaged/grid_update/double") == 2);
     CHECK(occurrences(part, "structured/") == 0);  // timed with one thread only
 }
 

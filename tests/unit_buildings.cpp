@@ -66,7 +66,7 @@ TEST_CASE("Columns alone may have hundreds of barriers, 3D points may not", "[sc
     CHECK(scene_of(with_houses("height = 6\neach = true\n"), gis).barriers.size() == 64);
     const std::string stage = "[[stage]]\nmodel = \"solid_flow\"\nwindow = [1020, 2020, 1100, 2100]\n";
     const std::string problem = only_problem([&] { scene_of(with_houses("height = 6\neach = true\n", stage), gis); });
-    CHECK_THAT(problem, Contains("found 64 barriers") && Contains("points in space"));
+    CHECK_THAT(problem, Contains("found 64 barriers") && Contains("3D points"));
 }
 
 TEST_CASE("Each house has the height of its feature, up to 500 m", "[scene][barriers]") {

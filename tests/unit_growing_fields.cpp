@@ -1,4 +1,4 @@
-// What differs in space on a part of a large terrain that grows: friction, loose ground, deposits, trees.
+// What varies from place to place on a part of a large terrain that grows: friction, loose ground, deposits, trees.
 #include <algorithm>
 
 #include "analytic_scene.h"

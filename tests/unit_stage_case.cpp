@@ -160,7 +160,7 @@ TEST_CASE("Stages that cannot be are refused in one sentence", "[stages]") {
     CHECK(has(problem_of(two + west + "top = 1e9\n"),
               "stage.1.top: found 1e+09 m; expected at most 10128.8 m, 10 km above the window's ground"));
     CHECK(has(problem_of(two + west + "spacing = 1e-5\n"),
-              "stage.spacing: found 3e+18 points in space once all of the release is in the window, which need "));
+              "stage.spacing: found 3e+18 3D points once all of the release is in the window, which need "));
     CHECK(has(problem_of(two + west + "yield_stress = 3\n"),
               "stage.1.yield_stress: found, but the law \"drucker_prager by the bed's friction\" does not"));
     CHECK(has(problem_of(two + west + "cohesion = 3\n"),
@@ -283,7 +283,7 @@ TEST_CASE("A barrier that stands outside of the stage's window is remarked on, o
     };
     CHECK_FALSE(has(remarks(west), "barrier.0"));
     CHECK(has(remarks("window = [1100, 2000, 1160, 2100]\n"),
-              "barrier.0.outline: stands outside of stage.window: points in space do not meet it"));
+              "barrier.0.outline: stands outside of stage.window: 3D points do not meet it"));
 }
 
 TEST_CASE("A barrier of any shape comes from a mesh alone, through the reader that the program hands in", "[barrier]") {

@@ -1,4 +1,4 @@
-// Rheologies that differ in space: the same bits where all nodes have the same, what points of a zone feel, and what zones and
+// Rheologies that vary from place to place: the same bits where all nodes have the same, what points of a zone feel, and what zones and
 // rasters of a case mean.
 #include <algorithm>
 #include <cmath>
@@ -263,7 +263,8 @@ TEST_CASE("What is wrong with zones and rasters of a rheology is said in one sen
               "found, but water.friction = \"none\" does not use it; expected keys of that law: none"));
     const std::string stage = "[[stage]]\nmodel = \"solid_flow\"\nwindow = [1020, 2020, 1100, 2100]\n";
     CHECK(has(problem_of(gis, zone + "rheology.yield_stress = 900\n" + stage),
-              "material.rheology.law: found \"bingham\" that differs in space, with a stage that takes its numbers"));
+              "material.rheology.law: found \"bingham\" that varies from place to place, with a stage that takes its "
+              "numbers"));
     CHECK_NOTHROW(scene_of(gis, zone + "rheology.yield_stress = 900\n" + stage + "viscosity = 5\nyield_stress = 50\n"));
 }
 

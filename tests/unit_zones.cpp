@@ -1,4 +1,4 @@
-// Friction that differs in space: the same bits where all nodes have the same, and what zones and rasters of a case mean.
+// Friction that varies from place to place: the same bits where all nodes have the same, and what zones and rasters of a case mean.
 #include <algorithm>
 #include <cmath>
 
@@ -309,7 +309,8 @@ TEST_CASE("What is wrong with zones and rasters of friction is said in one sente
                           "[[material.zone]]\nabove = 10\nyield_stress = 900\n[[stage]]\nmodel = \"solid_flow\"\n"
                           "window = [1020, 2020, 1100, 2100]\n";
     CHECK(has(problem_of(gis, mud + stage),
-              "material.bed.law: found \"bingham\" that differs in space, with a stage; expected one yield stress"));
+              "material.bed.law: found \"bingham\" that varies from place to place, with a stage; expected one yield "
+              "stress"));
     const std::string grains =
         "[material.bed]\nlaw = \"pouliquen\"\nmu_s = \"mu.tif\"\nmu_2 = 0.4\ngrain_diameter = 0.01\n";
     CHECK(has(problem_of(gis, grains), "found mu_2 = 0.4 at x 1037.5, y 2027.5; expected more than mu_s = 0.5 there"));

@@ -150,7 +150,7 @@ void FlowMap::serialize(Archive& archive) {
             for (const double number : peaks_[k].numbers()) all.push_back(number);
         }
     archive.array("nodes", all);
-    archive.numbers("sums", {&extent_.max_depth, &extent_.max_speed, &extent_.covered_area, &extent_.front});
+    archive.numbers("sums", extent_.numbers());
     if (all.size() != kNumbers * nodes_.size()) Archive::wrong_length("nodes", all.size(), kNumbers * nodes_.size());
     if (!archive.loading()) return;
     for (std::size_t k = 0; k < nodes_.size(); ++k) {

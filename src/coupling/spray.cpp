@@ -49,7 +49,7 @@ void Spray::sample(const Mpm3d& flow) {
 std::optional<std::string> Spray::remark() const {
     if (!(most_share_ > 0.0)) return {};
     std::string text = fmt::format(
-        "points in space: {:.2g} % of their mass had more energy than a fall from the release's highest head gives. "
+        "3D points: {:.2g} % of their mass had more energy than a fall from the release's highest head gives. "
         "That head "
         "is {:.6g} m, the largest of a point {:.6g} m; most had more at {:.6g} s. Spray may have more; do not build on "
         "the "

@@ -19,7 +19,7 @@ bool marked(const std::vector<std::uint8_t>& marks, const GridGeometry& g, doubl
 
 const double* numbers(const Frame& frame, const char* name) {
     const Field* const field = frame.particle(name);
-    expect(field != nullptr, "columns have the quantities that points in space need");
+    expect(field != nullptr, "columns have the quantities that 3D points need");
     return field->data;
 }
 

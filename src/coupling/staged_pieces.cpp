@@ -27,7 +27,7 @@ void StagedRun::remark_pieces(std::vector<std::string>& remarks) const {
     constexpr double kWorthARemark = 0.01;
     if (apart_.most_apart < kWorthARemark) return;
     remarks.push_back(fmt::format(
-        "points in space came apart: {:.3g} % of their mass lay more than a cell from the largest piece at {:.6g} s; "
+        "3D points came apart: {:.3g} % of their mass lay more than a cell from the largest piece at {:.6g} s; "
         "at the last output {:.3g} % in {} pieces, and {:.3g} % felt nothing of the largest. Spray and what slides "
         "off part in nature, thin material that is drawn out further than its points does by the scheme (numerical "
         "fracture); more points, by a smaller stage.spacing, keep more of it together",

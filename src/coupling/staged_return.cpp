@@ -130,7 +130,7 @@ void StagedRun::convert_to_2d() {
 
 /// All points become columns, and the window is a part of the map like any other.
 void StagedRun::end_3d() {
-    timed_("hand back", [&] {
+    timed_("3D to 2D", [&] {
         points_->set_adjacent(GhostParticles{});
         points_->leave();
         columns_->close_exits();

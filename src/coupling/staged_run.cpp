@@ -29,7 +29,7 @@ StagedRun::StagedRun(const Scene& scene, Start start)
           std::make_unique<DepthAveraged>(scene.barriers.empty() ? scene : on_bed(scene, with_barriers(scene)), start)),
       map_(scene),
       spray_(scene) {
-    expect(scene.solid.has_value(), "a staged run has a stage in space");
+    expect(scene.solid.has_value(), "a staged run has a 3D stage");
     if (!scene.barriers.empty()) {
         mark_raised();
         columns_->note_parents();
@@ -97,7 +97,7 @@ void StagedRun::step_points(double until) {
     note_departed();
     if (alone || points_->status().time == columns_->status().time) {
         convert_to_3d();
-        if (!returning_.empty()) timed_("hand back", [&] { convert_to_2d(); });
+        if (!returning_.empty()) timed_("3D to 2D", [&] { convert_to_2d(); });
     }
     for (const Mpm3d::Birth& birth : points_->take_births())
         if (watch_) watch_->inherit(birth.child, birth.parent);
@@ -109,7 +109,7 @@ void StagedRun::step_points(double until) {
 /// Columns in the window become points, those outside stay; none of them is in both.
 void StagedRun::begin_3d(const std::function<FlowColumns(const Marks&)>& columns_at) {
     const Status before = columns_->status();
-    timed_("hand over", [&] {
+    timed_("2D to 3D", [&] {
         const Marks inside = nodes_in_window(scene_), everywhere(inside.size(), 1);
         start_ = choose_start(scene_, columns_at(everywhere));  // what is outside still comes
         SolidScene space = space_of_stage();
@@ -208,7 +208,7 @@ void StagedRun::step_columns(double until) {
 /// The columns that flowed into the window in the columns' last step.
 void StagedRun::convert_to_3d() {
     if (pending_.empty()) return;
-    timed_("hand over", [&] {
+    timed_("2D to 3D", [&] {
         std::vector<Mat2> gradients;
         const FlowColumns all = columns_at_edge(gradients);
         FlowColumns columns;
@@ -327,7 +327,7 @@ void StagedRun::remark_law(std::vector<std::string>& remarks) const {
     const SolidStage& stage = *scene_.solid;
     if (stage.of_bed)
         remarks.push_back(fmt::format(
-            "points in space are sand with an internal friction of {:.3g} degrees, {}{}; stage.law names another law",
+            "3D points are sand with an internal friction of {:.3g} degrees, {}{}; stage.law names another law",
             std::atan(start_.friction) / constants::kDegree,
             stage.whole_bed_law ? "the mean friction at the bed when the stage begins, and no less than the slope"
                                 : "as along the bed",
@@ -335,12 +335,12 @@ void StagedRun::remark_law(std::vector<std::string>& remarks) const {
     if (stage.whole_bed_law || start_.stuck) return;
     if (scene_.bed_laws())
         remarks.push_back(fmt::format(
-            "points in space have a friction of {:.3g} at the bed, by stage.bed_friction, wherever they are; friction "
-            "that differs in space is that of columns alone",
+            "3D points have a friction of {:.3g} at the bed, by stage.bed_friction, wherever they are; friction "
+            "that varies from place to place is that of columns alone",
             stage.bed_friction));
     if (hangs_on_speed(scene_.bed_law))
         remarks.push_back(fmt::format(
-            "points in space feel of the bed law its Coulomb friction alone, {:.3g}: what grows with speed is missing "
+            "3D points feel of the bed law its Coulomb friction alone, {:.3g}: what grows with speed is missing "
             "there, so they are too fast rather than too slow",
             stage.bed_friction));
 }
@@ -352,18 +352,18 @@ void StagedRun::remark_cells(std::vector<std::string>& remarks) const {
     const double depth = depth_of_points(), cells = depth / stage.cell;
     if (became_points_ > 0.0 && cells < kEnough)
         remarks.push_back(
-            fmt::format("points in space came in {:.3g} m deep (mean by mass), {:.2g} cells; expected {:.0f} or more, "
+            fmt::format("3D points came in {:.3g} m deep (mean by mass), {:.2g} cells; expected {:.0f} or more, "
                         "or forces hang on the cell, and run-up and what goes over a barrier much more; "
                         "stage.cell = {:g} would do",
                         depth, cells, kEnough, round_number_below(depth / kEnough)));
     if (stage.stuck_where_resolved && !start_.stuck)
         remarks.push_back(fmt::format(
-            "points in space slide over the bed, which brakes them by material.bed; for mud that sticks to it, with "
+            "3D points slide over the bed, which brakes them by material.bed; for mud that sticks to it, with "
             "{:.3g} m/s, which it has or may come to by its weight, cells of {:g} m would be needed",
             start_.speed, round_number_below(resolving_cell(stage.law, scene_.density, start_.depth, start_.speed))));
     if (start_.stuck && stage.cell > finest_needed_)
         remarks.push_back(fmt::format(
-            "points in space stick to the bed, on cells that did not show the layer that shears there when "
+            "3D points stick to the bed, on cells that did not show the layer that shears there when "
             "they were fastest; expected {:g} m or less, or the bed holds back more than the material does; "
             "give a smaller stage.cell, or stage.stuck = false, with which the bed law brakes them",
             round_number_below(finest_needed_)));
@@ -390,11 +390,11 @@ std::vector<std::string> StagedRun::remarks() const {
     const SolidStatus& s = points_->status();
     constexpr double kRoundOff = 1e-12;
     const double density = scene_.density, rest = s.mass / density, gone = s.mass_left - returned_.mass;
-    remarks.push_back(fmt::format(
-        "points in space from {:.6g} s on: {} now, {:.6g} m3 of them came in over the window's edges later, "
-        "{:.6g} m3 became columns again, {:.6g} m3 left through its sides; top of the space {:.6g} m",
-        scene_.solid->from, s.points, converted_.mass_later / density, returned_.mass / density,
-        gone > kRoundOff * s.mass_left ? gone / density : 0.0, start_.top));
+    remarks.push_back(
+        fmt::format("3D points from {:.6g} s on: {} now, {:.6g} m3 of them came in over the window's edges later, "
+                    "{:.6g} m3 became columns again, {:.6g} m3 left through its sides; top of the space {:.6g} m",
+                    scene_.solid->from, s.points, converted_.mass_later / density, returned_.mass / density,
+                    gone > kRoundOff * s.mass_left ? gone / density : 0.0, start_.top));
     remark_law(remarks);
     remark_cells(remarks);
     const bool fluid = std::visit([](const auto& law) { return law.kAverages; }, scene_.solid->law);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "base/types.h"
 
@@ -70,6 +71,8 @@ struct FlowExtent {
         front = std::max(front, other.front);
         mass += other.mass, motion += other.motion;
     }
+    /// All of it, to be serialized.
+    std::vector<double*> numbers() { return {&max_depth, &max_speed, &covered_area, &front, &mass, &motion}; }
     double mean_speed() const { return mass > 0.0 ? motion / mass : 0.0; }  ///< along the bed [m/s]
 };
 

@@ -94,7 +94,9 @@ void serialize(Archive& archive, const std::string& name, Status& s) {
                                 &s.bed.eroded,
                                 &s.bed.deposited,
                                 &s.bed.energy,
-                                &s.bed.deepest});
+                                &s.bed.deepest,
+                                &s.water,
+                                &s.water_volume});
 }
 
 void serialize(Archive& archive, const std::string& name, std::vector<PhaseTime>& phases) {

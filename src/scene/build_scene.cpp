@@ -137,15 +137,14 @@ private:
         const double free = free_memory(), without = need.total() - need.space;
         const bool space = need.space > 0.5 * need.total();
         const MemoryUse use =
-            space
-                ? MemoryUse{"stage.spacing",
-                            fmt::format("found {:.3g} points in space once all of the release is in the window, which",
-                                        most_points(scene_)),
-                            "give a larger spacing or a smaller window"}
-                : MemoryUse{"memory",
-                            fmt::format("found {} nodes and {} particles, which", scene_.bed.geometry.size(),
-                                        particle_count()),
-                            "use fewer particles, a larger grid.cell or a smaller terrain.window"};
+            space ? MemoryUse{"stage.spacing",
+                              fmt::format("found {:.3g} 3D points once all of the release is in the window, which",
+                                          most_points(scene_)),
+                              "give a larger spacing or a smaller window"}
+                  : MemoryUse{"memory",
+                              fmt::format("found {} nodes and {} particles, which", scene_.bed.geometry.size(),
+                                          particle_count()),
+                              "use fewer particles, a larger grid.cell or a smaller terrain.window"};
         problems_.attempt(case_.file().string(), [&] {
             if (without + 0.1 * need.space > free) require_memory(need.total(), free, use);
         });

@@ -309,7 +309,7 @@ void add_space(std::vector<Combination>& table) {
                      "remove one of them"});
     table.push_back({{"section", Are::tables},
                      {{"stage", Are::tables}},
-                     "expected none: points in space that pass a line are not counted",
+                     "expected none: 3D points that pass a line are not counted",
                      "remove it, or use [[gauge]] or [[profile]]",
                      " with a stage"});
 }

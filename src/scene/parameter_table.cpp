@@ -331,7 +331,7 @@ void add_run(Table& table) {
     fields.fallback = std::vector<std::string>{};
     table.push_back(fields);
     table.push_back(choice("output.film", {"none", "mp4", "gif"}, "none",
-                           "film of the depth, and of points in space, at the output times, from the frames of "
+                           "film of the depth, and of 3D points, at the output times, from the frames of "
                            "format vtk; needs the program ffmpeg"));
     table.push_back(number("output.footprint_depth", "m", positive, 0.1, "deeper than this counts as covered"));
     table.push_back(choice("output.history", {"step", "output"}, "step", "history.csv has a line per step or frame"));

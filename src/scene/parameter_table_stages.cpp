@@ -17,7 +17,7 @@ Parameter of_3d(Parameter parameter, const char* otherwise) {
 /// Keys of one law of 3D material; other laws refuse them.
 void add_laws(Table& table) {
     const char* const law = "stage.law";
-    Parameter choice_of_law = make(law, Kind::choice, "", "law of the material in space");
+    Parameter choice_of_law = make(law, Kind::choice, "", "law of the material in 3D");
     choice_of_law.choices = {"fluid", "bingham", "herschel_bulkley", "drucker_prager", "elastic"};
     table.push_back(of_3d(choice_of_law,
                           "bingham or a fluid, by the rheology or the bed law of mud; else sand as steep inside as the "
@@ -102,30 +102,28 @@ void add_barriers(Table& table) {
     table.push_back(
         absent(instead(number("barrier.top", "m", any_number, "elevation of a level top"), "barrier.height"),
                "height or height_field is needed"));
-    table.push_back(
-        number("barrier.friction", "1", between(0.0, 10.0), 0.0,
-               "Coulomb's friction coefficient between points in space, or structured columns, and the barrier"));
-    table.push_back(
-        flag("barrier.stuck", false, "points in space and structured columns do not slide along the barrier"));
+    table.push_back(number("barrier.friction", "1", between(0.0, 10.0), 0.0,
+                           "Coulomb's friction coefficient between 3D points, or structured columns, and the barrier"));
+    table.push_back(flag("barrier.stuck", false, "3D points and structured columns do not slide along the barrier"));
     Parameter windows =
         make("barrier.windows", Kind::numbers, "s",
-             "times over which forces of points in space are averaged: one to eight, ascending, up to 10 s; the report "
+             "times over which forces of 3D points are averaged: one to eight, ascending, up to 10 s; the report "
              "gives the largest mean over each; before the start there is no force");
     windows.fallback = std::vector<double>{0.01, 0.05, 1.0};
     table.push_back(windows);
 }
 
 void add_stages(Table& table) {
-    Parameter choice_of_model = make(
-        model, Kind::choice, "",
-        "depth_averaged: columns; solid_flow: points in space, within the stage's window; columns may come before it, "
-        "after it, or both");
+    Parameter choice_of_model =
+        make(model, Kind::choice, "",
+             "depth_averaged: columns; solid_flow: 3D points, within the stage's window; columns may come before it, "
+             "after it, or both");
     choice_of_model.choices = {"depth_averaged", "solid_flow"};
     table.push_back(required(choice_of_model));
     table.push_back(absent(number("stage.until", "s", positive, "time at which the stage ends and the next begins"),
                            "the end of the run"));
     Parameter window = make("stage.window", Kind::numbers, "m",
-                            "where material becomes points in space: [xmin, ymin, xmax, ymax] in map coordinates; "
+                            "where material becomes 3D points: [xmin, ymin, xmax, ymax] in map coordinates; "
                             "cells whose nodes lie in it belong to it");
     window.length = 4;
     table.push_back(of_3d(window, "the whole terrain"));
@@ -136,8 +134,8 @@ void add_stages(Table& table) {
     closed.fallback = std::vector<std::string>{};
     table.push_back(with(closed, model, in_3d));
     table.push_back(
-        of_3d(number("stage.cell", "m", positive, "node distance of the grid in space"), "half of the grid's cell"));
-    table.push_back(of_3d(number("stage.spacing", "m", positive, "distance of the points in space at the start"),
+        of_3d(number("stage.cell", "m", positive, "node distance of the 3D grid"), "half of the grid's cell"));
+    table.push_back(of_3d(number("stage.spacing", "m", positive, "distance of the 3D points at the start"),
                           "half of the stage's cell: eight points a cell"));
     table.push_back(of_3d(number("stage.top", "m", any_number, "elevation above which points leave the space"),
                           "four times as high above the lowest ground as the energy of the material reaches"));

@@ -71,8 +71,7 @@ public:
                                       extent[0], extent[2], extent[1], extent[3]),
                           "correct the coordinates or the CRS, or widen terrain.window");
         else if (scene_.solid && !meets(vertices, window_extent()))
-            scene_.log.push_back(
-                fmt::format("{}: stands outside of stage.window: points in space do not meet it", place()));
+            scene_.log.push_back(fmt::format("{}: stands outside of stage.window: 3D points do not meet it", place()));
         barrier.wet_left = case_.word(prefix_ + "wet") == "left";
         if (given("thickness")) barrier.thickness = case_.number(prefix_ + "thickness");
         if (given("top")) barrier.top = case_.number(prefix_ + "top");
@@ -266,10 +265,9 @@ void read_barriers(const CaseFile& file, const GisReader& reader, const MeshRead
         barriers.read(i);
         const std::string place = file.table_place(fmt::format("barrier.{}", i));
         if (scene.solid && before <= kMost && scene.barriers.size() > kMost)
-            problems.add(
-                place, fmt::format("found {} barriers up to here", scene.barriers.size()),
-                fmt::format("expected {} at most in a run with points in space, which tell no more apart", kMost),
-                "put several polygons into one barrier, without each, or remove the stage");
+            problems.add(place, fmt::format("found {} barriers up to here", scene.barriers.size()),
+                         fmt::format("expected {} at most in a run with 3D points, which tell no more apart", kMost),
+                         "put several polygons into one barrier, without each, or remove the stage");
         for (std::size_t n = before; n < scene.barriers.size(); ++n)
             if (const auto [first, is_new] = tables.emplace(scene.barriers[n].name, i); !is_new && first->second != i)
                 problems.add(place,

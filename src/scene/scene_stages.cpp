@@ -226,15 +226,17 @@ private:
     SolidLaw law(SolidStage& stage) {
         const std::string law = law_of_case();
         if (mud_of_bed() && scene_.bed_laws())
-            problems_.add(case_.place("material.bed.law"), "found \"bingham\" that differs in space, with a stage",
-                          "expected one yield stress and viscosity: mud in space has the same everywhere",
+            problems_.add(case_.place("material.bed.law"),
+                          "found \"bingham\" that varies from place to place, with a stage",
+                          "expected one yield stress and viscosity: mud in 3D has the same everywhere",
                           "name the stage's law, or remove what makes material.bed differ");
         if (scene_.rheologies() && takes_rheology(law))
-            problems_.add(case_.place("material.rheology.law"),
-                          fmt::format("found \"{}\" that differs in space, with a stage that takes its numbers",
-                                      case_.word("material.rheology.law")),
-                          "expected one of each: material in space has the same everywhere",
-                          "give stage.viscosity and stage.yield_stress, or remove what makes material.rheology differ");
+            problems_.add(
+                case_.place("material.rheology.law"),
+                fmt::format("found \"{}\" that varies from place to place, with a stage that takes its numbers",
+                            case_.word("material.rheology.law")),
+                "expected one of each: material in 3D has the same everywhere",
+                "give stage.viscosity and stage.yield_stress, or remove what makes material.rheology differ");
         if (law == "of_bed") {
             stage.of_bed = true;
             for (const char* name : {"yield_stress", "shear_modulus", "friction_angle_deg", "cohesion", "cone",

@@ -156,11 +156,11 @@ void DepthAveraged::advance(double until) {
     if (late_) until = std::min(until, late_->next());  // that time is hit
     const double share = share_of_ordinary_step();
     flow_.carried_share = 1.0 - share;
-    const double dt = timed_("kick and friction", [&] { return update_nodes(step_length(until)); });
+    const double dt = timed_("grid update", [&] { return update_nodes(step_length(until)); });
     flow_.rest.settled = since_split_ == 0.0 || flow_.scheme.paper_pressure;  // that preset does neither
     since_split_ += share;
     const bool due = since_split_ >= (1.0 - 1e-9) * kStepsBetweenSplits;
-    timed_("kick and friction", [&] { mirror_motion(flow_); });
+    timed_("grid update", [&] { mirror_motion(flow_); });
     const double next_velocity_dt = 0.5 * (dt + longest_step());
     const bool rows = feed_ && feed_->due(status_.after(dt, until));
     // Rows wait until points are sorted anyway. A sort of its own for each would cost a fifth of a step.

@@ -10,7 +10,7 @@ void DepthAveraged::set_adjacent(const std::vector<double>& depth) {
            "every node of the grid has a depth of other material");
     flow_.scheme.sleep = false;  // what is adjacent to sleeping columns may stir them
     for (const Index tile : flow_.active.tile) flow_.active.quiet[tile] = 0;
-    timed_("beside", [&] {
+    timed_("ghost particles", [&] {
         stress_power_ = transfer_->deposit(flow_, 0.5 * (status_.dt + longest_step())).stress_power;
         fold_walls(flow_);
         add_adjacent(depth);

@@ -1,5 +1,8 @@
 #include "shallow/mass_fit.h"
 
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCore>
+
 #include <algorithm>
 
 #include "mpm/domain.h"
@@ -68,84 +71,46 @@ Reach reach_of(const Flow& flow, Index p) {
     return flow.scheme.shape == Shape::cubic ? reach_with<Cubic>(flow, p) : reach_with<Quadratic>(flow, p);
 }
 
-/// The system B W B^T on the chosen rows, applied without being stored.
+/// B on the chosen rows, a column for each point.
 class FitSystem {
 public:
-    FitSystem(const Flow& flow, const std::vector<double>& weight) : weight_(weight), row_(flow.grid.size()) {
+    using Numbers = Eigen::VectorXd;
+
+    explicit FitSystem(const Flow& flow) : row_(flow.grid.size()) {
         reach_.reserve(static_cast<std::size_t>(flow.columns.count()));
         for (Index p = 0; p < flow.columns.count(); ++p) reach_.push_back(reach_of(flow, p));
     }
     void set_rows(const std::vector<Index>& nodes) {
         for (std::size_t r = 0; r < nodes.size(); ++r) row_[nodes[r]] = static_cast<Index>(r) + 1;
-        rows_ = static_cast<Index>(nodes.size());
-    }
-    /// W B^T y: the change of each point's mass.
-    void spread(const std::vector<double>& y, std::vector<double>& change) const {
-        const Index count = static_cast<Index>(reach_.size());
-        change.resize(reach_.size());
-#pragma omp parallel for schedule(static)
-        for (Index p = 0; p < count; ++p) {
-            double sum = 0.0;
-            for (int n = 0; n < reach_[p].count; ++n)
-                if (const Index r = row_[reach_[p].node[n]]) sum += reach_[p].weight[n] * y[r - 1];
-            change[p] = weight_[p] * sum;
-        }
-    }
-    /// B m on the rows.
-    void collect(const std::vector<double>& mass, std::vector<double>& sums) const {
-        sums.assign(static_cast<std::size_t>(rows_), 0.0);
+        std::vector<Eigen::Triplet<double>> entries;
         for (std::size_t p = 0; p < reach_.size(); ++p)
             for (int n = 0; n < reach_[p].count; ++n)
-                if (const Index r = row_[reach_[p].node[n]]) sums[r - 1] += reach_[p].weight[n] * mass[p];
+                if (const Index r = row_[reach_[p].node[n]])
+                    entries.emplace_back(static_cast<int>(r - 1), static_cast<int>(p), reach_[p].weight[n]);
+        deposit_.resize(static_cast<Index>(nodes.size()), static_cast<Index>(reach_.size()));
+        deposit_.setFromTriplets(entries.begin(), entries.end());
+    }
+    /// B m on the rows.
+    Numbers collect(const Numbers& mass) const { return deposit_ * mass; }
+    /// Least change of the masses, each over its weight, whose B is `rhs`: W^1/2 x of the shortest x with B W^1/2 x = rhs.
+    /// More rows than points with weight may have no solution, then the nearest counts. Adds to the iterations.
+    Numbers change(const Numbers& weight, const Numbers& rhs, Index& iterations) const {
+        const Numbers root = weight.cwiseSqrt();
+        // Without a preconditioner: with one x would be the shortest by another measure.
+        Eigen::LeastSquaresConjugateGradient<Eigen::SparseMatrix<double>, Eigen::IdentityPreconditioner> solver;
+        solver.setTolerance(1e-15);
+        solver.setMaxIterations(1000);
+        solver.compute(deposit_ * root.asDiagonal());
+        const Numbers x = solver.solve(rhs);
+        iterations += solver.iterations();
+        return root.cwiseProduct(x);
     }
 
 private:
-    const std::vector<double>& weight_;
     std::vector<Reach> reach_;
     LazyArray<Index> row_;  ///< row number + 1 of a node, 0: none
-    Index rows_ = 0;
+    Eigen::SparseMatrix<double> deposit_;
 };
-
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
-    return sum;
-}
-
-/// Conjugate gradients for (B W B^T) y = rhs, to round-off or 1000 iterations. Rows that no point with weight reaches are
-/// left out. More rows than such points may have no solution, then the best so far counts. Returns the iterations.
-Index solve(const FitSystem& system, const std::vector<double>& weight, std::vector<double> residual,
-            std::vector<double>& y) {
-    std::vector<double> change, applied;
-    system.collect(weight, applied);
-    for (std::size_t k = 0; k < residual.size(); ++k)
-        if (!(applied[k] > 0.0)) residual[k] = 0.0;
-    std::vector<double> direction = residual, best(residual.size(), 0.0);
-    y = best;
-    double rr = dot(residual, residual), least = rr;
-    const double goal = 1e-30 * rr;
-    Index iteration = 0;
-    for (; iteration < 1000 && rr > goal && rr < 1e12 * least; ++iteration) {
-        system.spread(direction, change);
-        system.collect(change, applied);
-        const double bend = dot(direction, applied);
-        if (!(bend > 0.0)) break;
-        const double step = rr / bend;
-        for (std::size_t k = 0; k < y.size(); ++k) {
-            y[k] += step * direction[k];
-            residual[k] -= step * applied[k];
-        }
-        const double next = dot(residual, residual);
-        for (std::size_t k = 0; k < y.size(); ++k) direction[k] = residual[k] + next / rr * direction[k];
-        rr = next;
-        if (rr < least) {
-            least = rr;
-            best = y;
-        }
-    }
-    y.swap(best);
-    return iteration;
-}
 
 /// Deposits the columns' mass alone and finds wetness and margin.
 void deposit_columns(Flow& flow) {
@@ -177,10 +142,11 @@ double off_level(const Flow& flow, double level) {
 
 MassFit fit_masses(Flow& flow, double level) {
     MassFit fit;
-    const std::vector<double> start(flow.columns.mass.begin(), flow.columns.mass.end());
+    using Numbers = FitSystem::Numbers;
+    const Numbers start = Numbers::Map(flow.columns.mass.data(), flow.columns.count());
     // A mass that meets its limits stays there, with no weight of its own, and the others are fitted again.
-    std::vector<double> from = start, weight = start;
-    FitSystem system(flow, weight);
+    Numbers from = start, weight = start;
+    FitSystem system(flow);
     const double column = flow.density * flow.area;
 
     deposit_columns(flow);
@@ -202,14 +168,13 @@ MassFit fit_masses(Flow& flow, double level) {
     gather_rows(false, 0.0);
     for (int round = 0, refits = 0; round < 4;) {
         system.set_rows(rows);
-        std::vector<double> rhs, y, change;
-        system.collect(from, rhs);
-        for (std::size_t r = 0; r < rows.size(); ++r) rhs[r] = column * (level - flow.bed.z[rows[r]]) - rhs[r];
-        fit.iterations += solve(system, weight, rhs, y);
-        system.spread(y, change);
+        Numbers rhs = -system.collect(from);
+        for (std::size_t r = 0; r < rows.size(); ++r)
+            rhs[static_cast<Index>(r)] += column * (level - flow.bed.z[rows[r]]);
+        const Numbers change = system.change(weight, rhs, fit.iterations);
         fit.largest_change = 0.0;
         Index clipped = 0;
-        for (std::size_t p = 0; p < start.size(); ++p) {
+        for (Index p = 0; p < start.size(); ++p) {
             const double wanted = from[p] + change[p];
             flow.columns.mass[p] = std::clamp(wanted, 0.03 * start[p], 5.0 * start[p]);
             if (flow.columns.mass[p] != wanted) {

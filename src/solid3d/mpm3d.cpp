@@ -30,12 +30,12 @@ void require_inside(const SolidSeeds& seeds, const GridGeometry3d& grid) {
     const std::size_t count = seeds.mass.size();
     expect(seeds.position.size() == count && seeds.velocity.size() == count &&
                (seeds.pressure.empty() || seeds.pressure.size() == count),
-           "points in space have a place, a velocity and a mass each");
+           "3D points have a place, a velocity and a mass each");
     for (std::size_t p = 0; p < count; ++p) {
         const Vec3 x = (seeds.position[p] - grid.origin) / grid.cell;
         for (int k = 0; k < 3; ++k)
-            expect(x[k] >= 0.5 && x[k] <= static_cast<double>(grid.nodes[k]) - 1.5, "points in space lie in the grid");
-        expect(seeds.mass[p] > 0.0, "points in space have mass");
+            expect(x[k] >= 0.5 && x[k] <= static_cast<double>(grid.nodes[k]) - 1.5, "3D points lie in the grid");
+        expect(seeds.mass[p] > 0.0, "3D points have mass");
     }
 }
 
@@ -257,9 +257,9 @@ void Mpm3d::advance(double until) {
     timed_("clear", [&] { kernel_->clear(body_); });
     timed_("scatter", [&] { kernel_->scatter(body_, dt); });
     const bool ghosts = !body_.ghosts.material.empty();
-    if (ghosts) timed_("beside", [&] { kernel_->scatter_ghosts(body_, status_.time, dt); });
-    timed_("images", [&] { kernel_->scatter_mirrors(body_, dt); });
-    if (ghosts) timed_("beside", [&] { kernel_->scatter_ghost_mirrors(body_); });
+    if (ghosts) timed_("ghost particles", [&] { kernel_->scatter_ghosts(body_, status_.time, dt); });
+    timed_("mirror particles", [&] { kernel_->scatter_mirrors(body_, dt); });
+    if (ghosts) timed_("ghost particles", [&] { kernel_->scatter_ghost_mirrors(body_); });
     timed_("nodes", [&] { kernel_->move_nodes(body_); });
     timed_("gather", [&] { kernel_->gather(body_, dt); });
     status_.tick(dt, until);

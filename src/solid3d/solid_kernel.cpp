@@ -658,7 +658,7 @@ private:
             box.first[axis] = first(-largest(-low));
             box.count[axis] = first(largest(high)) - box.first[axis] + 3;
         }
-        expect(NodeBlock::holds(box), "points in space strayed from their tile");
+        expect(NodeBlock::holds(box), "3D points strayed from their tile");
         return box;
     }
 

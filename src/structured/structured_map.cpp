@@ -140,8 +140,7 @@ void StructuredMap::serialize(Archive& archive) {
             for (const double number : q.numbers()) all.push_back(number);
         });
     archive.array("peaks", all);
-    FlowExtent& e = extent_;
-    archive.numbers("sums", {&e.max_depth, &e.max_speed, &e.covered_area, &e.front, &e.mass, &e.motion});
+    archive.numbers("sums", extent_.numbers());
     const std::size_t expected = NodePeak::kNumbers * static_cast<std::size_t>(nx_ * ny_);
     if (all.size() != expected) Archive::wrong_length("peaks", all.size(), expected);
     if (!archive.loading()) return;

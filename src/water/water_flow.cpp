@@ -266,7 +266,7 @@ void WaterFlow::advance(double until) {
     timed_("first stage", [&] { first_stage(body_, dt); });
     timed_("second stage", [&] { second_stage(body_, dt); });
     status_.tick(dt, until);
-    timed_("book", [&] { accumulate(); });
+    timed_("sums", [&] { accumulate(); });
 }
 
 /// Sums of the tiles, in their order.

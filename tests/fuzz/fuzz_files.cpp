@@ -89,7 +89,7 @@ void make_checkpoint(const std::string& file) {
     state.wholes = {-1};
     state.octets = {0, 255};
     state.texts = {"", "a"};
-    state.phases = {{"kick", 0.5, 0.25, 3}};
+    state.phases = {{"grid update", 0.5, 0.25, 3}};
     write_checkpoint(file, {{"case", "x = 1"}}, [&](Archive& archive) { state.serialize(archive); });
 }
 

@@ -57,7 +57,7 @@ Traffic traffic_of(const std::string& phase, const Flow& flow) {
     if (phase == "deposit") return deposit(flow);
     if (phase == "gather") return gather(flow);
     if (phase == "gather and deposit") return carry(flow);
-    if (phase == "kick and friction") return grid_update(flow);
+    if (phase == "grid update") return grid_update(flow);
     if (phase == "depth") return depth(flow);
     if (phase == "filter") return filter(flow);
     if (phase == "shoreline") return {0.0, 6.0};  // flags, three sweeps; margins are few
@@ -76,7 +76,7 @@ Traffic traffic_of(const std::string& phase, const SolidBody& body) {
     const double kept = body.flip_sums ? kNode4 : 0.0;  // what nodes had, in the place of the mean
     if (phase == "clear") return {0.0, kNode4 + kept + mean * kRead};
     if (phase == "scatter") return {deposited * kRead, 2.0 * (kNode4 + kept) + mean * kWrite};
-    if (phase == "images") return {2.0, 2.0};  // most points are far from surfaces: they are not read again
+    if (phase == "mirror particles") return {2.0, 2.0};  // most points are far from surfaces: they are not read again
     if (phase == "nodes") return {0.0, 2.0 * (kNode4 + kept) + mean * kWrite};
     if (phase == "gather") return {gathered * kWrite, kNode4 + kept + mean * kRead};
     if (phase == "sort") return {(18.0 + state) * (1.5 * kRead + kWrite), 0.0};

@@ -219,7 +219,7 @@ std::optional<Violation> Watch::head(const Snapshot& state) {
         if (above <= worst * most) continue;
         worst = above / most, found = above, allowed = most;
     }
-    return judged("head", found, allowed, state, "z + v^2 / 2g of a point in space above the start's surface [m]");
+    return judged("head", found, allowed, state, "z + v^2 / 2g of a 3D point above the start's surface [m]");
 }
 
 std::optional<Violation> Watch::rest(const Snapshot& state) {

@@ -138,7 +138,7 @@ Measurement run_conversion_at_rest(const Setup& setup) {
 
 std::vector<Problem> rest_problems() {
     Problem rest{"conversion_at_rest",
-                 "a wedge of water at rest on 20 degrees becomes points in space and stays where it is",
+                 "a wedge of water at rest on 20 degrees becomes 3D points and stays where it is",
                  {8, 16},
                  {},
                  run_conversion_at_rest};

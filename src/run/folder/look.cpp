@@ -233,7 +233,7 @@ std::string missing_for(const std::string& state, const fs::path& run_dir, const
     const std::string all = "set output.fields = \"all\" and run again";
     std::string lacks = lacks_arrays(seen, {"depth", "surface", "speed"}, all);
     if (state == "impact" && !fs::exists(run_dir / "barriers.pvd"))
-        return "no points in space stood before a barrier; give a [[barrier]] and a [[stage]] with model = "
+        return "no 3D points stood before a barrier; give a [[barrier]] and a [[stage]] with model = "
                "\"solid_flow\"";
     if (state == "impact" && !have_height(run_dir))
         return "an earlier version wrote the barriers without to_true_height; run the case again";
@@ -291,7 +291,7 @@ void look_at_impact(const fs::path& run_dir, Json& look) {
     Shared3d shared;
     shared.add(figure.moment);
     if (shared.empty() || figure.moment.typical_size <= 0.0) {
-        look["states"]["impact"] = "there were no points in space yet; run the case further";
+        look["states"]["impact"] = "there were no 3D points yet; run the case further";
         return;
     }
     figure.view = shared.view();

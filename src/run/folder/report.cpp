@@ -137,7 +137,7 @@ std::string results(const RunRecord& r) {
                     fmt::format("{:.3g}", r.extras.breakage->sub_cycling));
     if (r.extras.points_apart) {
         const PointsApart& a = *r.extras.points_apart;
-        text += row("pieces of points in space, more than a cell apart",
+        text += row("pieces of 3D points, more than a cell apart",
                     fmt::format("{}; {:.3g} % of the mass outside the largest, {:.3g} % out of its reach", a.pieces,
                                 100.0 * a.apart, 100.0 * a.alone));
     }
@@ -200,7 +200,7 @@ std::string budgets(const RunRecord& r) {
     const Status::In3d& points = s.last.in_3d;
     if (points.friction != 0.0 || points.walls != 0.0 || points.material != 0.0 || points.numerical != 0.0)
         text += fmt::format(
-            "Points in space hold {:.4g} J by their deformation. Of what was dissipated they lost {:.4g} J by friction "
+            "3D points hold {:.4g} J by their deformation. Of what was dissipated they lost {:.4g} J by friction "
             "along the bed and barriers, {:.4g} J to their pushes, {:.4g} J inside the material, and {:.4g} J to the "
             "scheme, which is what is left.\n\n",
             s.last.stored, points.friction, points.walls, points.material, points.numerical);
@@ -370,7 +370,7 @@ std::string barriers(const RunRecord& r) {
             "depth at a face first exceeds {:.4g} m "
             "(`output.footprint_depth`); of walls "
             "along lines and of meshes it is not known. Forces are "
-            "measured on points in space only ([[stage]]); columns take a barrier for ground. Over it: columns whose "
+            "measured on 3D points only ([[stage]]); columns take a barrier for ground. Over it: columns whose "
             "middle came onto it.\n",
             r.footprint_depth);
     return text + "\n";

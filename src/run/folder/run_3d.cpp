@@ -72,7 +72,7 @@ public:
         figure.bed = source_.bed;
         figure.moment = moment(number);
         figure.view = view;
-        figure.title = fmt::format("{}: points in space, t = {:.{}f} s", source_.title, time(number), digits);
+        figure.title = fmt::format("{}: 3D points, t = {:.{}f} s", source_.title, time(number), digits);
         figure.footer = figure.moment.typical_size > 0.0
                             ? fmt::format("points of {:.2g} m; {}", figure.moment.typical_size, source_.footer)
                             : source_.footer;
@@ -157,13 +157,13 @@ void add_3d(const FigureSource& source, Gallery& gallery) {
             if (one.close) figure.view = close_view(figure.view, figure.moment);
             if (figure.moment.typical_size <= 0.0) {
                 if (one.name != "points")
-                    gallery.warn(fmt::format("figures/view_{}.png was not drawn: there are no points in space {}",
-                                             one.name, one.caption));
+                    gallery.warn(fmt::format("figures/view_{}.png was not drawn: there are no 3D points {}", one.name,
+                                             one.caption));
                 continue;
             }
             const auto seen = std::make_shared<const Figure3d>(figure);
             gallery.add_rendered(
-                {"figures/view_" + one.name + ".png", "points in space " + one.caption},
+                {"figures/view_" + one.name + ".png", "3D points " + one.caption},
                 [seen](const fs::path& png, std::string& why_not) { return render_3d(*seen, png, why_not); });
             figure.title += ", section along the flow";
             const auto cut = std::make_shared<const Figure3d>(std::move(figure));
@@ -178,33 +178,32 @@ void add_3d(const FigureSource& source, Gallery& gallery) {
 
 void add_film_3d(const FigureSource& source, const std::string& kind, Gallery& gallery) {
     if (!has_points(source)) return;
-    gallery.add_rendered(
-        {"figures/film_points." + kind, "points in space through time"},
-        [&source](const fs::path& film, std::string& why_not) {
-            why_not = no_film_reason();
-            if (!why_not.empty()) return false;
-            const Run3d run(source);
-            Shared3d shared;  // every output is read twice, so that they need not fit the memory together
-            std::vector<Index> shown;
-            std::vector<Vec3> room;
-            for (Index number = 0; number < run.count(); ++number) {
-                const Moment3d moment = run.moment(number);
-                if (moment.typical_size <= 0.0) continue;
-                shared.add(moment);
-                shown.push_back(number);
-                add_some(moment, room);
-            }
-            if (shown.empty()) return why_not = "no output has points in space", false;
-            const ViewAngles3d look =
-                best_view(run.figure(run.hardest().value_or(shown.back()), shared.view(), run.digits()));
-            return make_film(film, static_cast<Index>(shown.size()), why_not, [&](Index k, const fs::path& png) {
-                const Index number = shown[static_cast<std::size_t>(k)];
-                Figure3d figure = run.figure(number, shared.view(), run.digits());
-                figure.look = look;  // one for all, and one scale
-                figure.room = room;
-                return render_3d(figure, png, why_not);
-            });
+    gallery.add_rendered({"figures/film_points." + kind, "3D points through time"}, [&source](const fs::path& film,
+                                                                                              std::string& why_not) {
+        why_not = no_film_reason();
+        if (!why_not.empty()) return false;
+        const Run3d run(source);
+        Shared3d shared;  // every output is read twice, so that they need not fit the memory together
+        std::vector<Index> shown;
+        std::vector<Vec3> room;
+        for (Index number = 0; number < run.count(); ++number) {
+            const Moment3d moment = run.moment(number);
+            if (moment.typical_size <= 0.0) continue;
+            shared.add(moment);
+            shown.push_back(number);
+            add_some(moment, room);
+        }
+        if (shown.empty()) return why_not = "no output has 3D points", false;
+        const ViewAngles3d look =
+            best_view(run.figure(run.hardest().value_or(shown.back()), shared.view(), run.digits()));
+        return make_film(film, static_cast<Index>(shown.size()), why_not, [&](Index k, const fs::path& png) {
+            const Index number = shown[static_cast<std::size_t>(k)];
+            Figure3d figure = run.figure(number, shared.view(), run.digits());
+            figure.look = look;  // one for all, and one scale
+            figure.room = room;
+            return render_3d(figure, png, why_not);
         });
+    });
 }
 
 }  // namespace frana

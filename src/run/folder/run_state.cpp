@@ -78,7 +78,7 @@ void require_columns(const Loaded& loaded, const fs::path& frames) {
     if (model == loaded.columns.end()) return;
     if (std::none_of(model->second.begin(), model->second.end(), [](double m) { return m != 0.0; })) return;
     throw UserError(
-        fmt::format("{}: its particles are points in space already at that time; expected columns; give a --time "
+        fmt::format("{}: its particles are 3D points already at that time; expected columns; give a --time "
                     "before the stage in "
                     "space begins, or after it has ended",
                     frames.string()));
