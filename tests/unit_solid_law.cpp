@@ -2,7 +2,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "catch.h"
-#include "law/solid_law.h"
+#include "law/solid/laws.h"
 
 using namespace frana;
 

@@ -1,7 +1,7 @@
 // 3D rigid surfaces: distances, mirror images, shares of an impulse.
 #include "base/constants.h"
 #include "catch.h"
-#include "law/solid_law.h"
+#include "law/solid/laws.h"
 #include "solid3d/mirror_batch.h"
 #include "solid3d/surfaces.h"
 

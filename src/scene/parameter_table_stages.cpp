@@ -1,5 +1,6 @@
 // The keys of [[barrier]] and of [[stage]]. A stage says which model carries the material until when, and how the 3D
 // one is set up.
+#include "law/solid/laws.h"
 #include "scene/parameter_makers.h"
 
 namespace frana {
@@ -18,7 +19,7 @@ Parameter of_3d(Parameter parameter, const char* otherwise) {
 void add_laws(Table& table) {
     const char* const law = "stage.law";
     Parameter choice_of_law = make(law, Kind::choice, "", "law of the material in 3D");
-    choice_of_law.choices = {"fluid", "bingham", "herschel_bulkley", "drucker_prager", "elastic"};
+    choice_of_law.choices = solid::words();
     table.push_back(of_3d(choice_of_law,
                           "bingham or a fluid, by the rheology or the bed law of mud; else sand as steep inside as the "
                           "bed's friction, or a fluid on a bed without"));
@@ -34,31 +35,32 @@ void add_laws(Table& table) {
                      "artificial speed of sound of fluids, with a yield stress or without, and of sand where no law is "
                      "named: the density changes by about (speed / sound_speed)^2"),
               "ten times the larger of the fastest speed and sqrt(2 g depth) when the stage begins"));
-    const std::vector<std::string> mud = {"herschel_bulkley"};
-    table.push_back(with(
+    const auto of_laws = [&](Parameter parameter, std::vector<std::string> needed_by = {}) {
+        const std::string key = parameter.key.substr(parameter.key.find('.') + 1);
+        return with(std::move(parameter), law, solid::words_with(key), std::move(needed_by));
+    };
+    const std::vector<std::string> mud = {solid::HerschelBulkley::name}, sand = {solid::DruckerPrager::name};
+    table.push_back(of_laws(
         number("stage.consistency", "Pa s^n", positive, "K of herschel_bulkley: tau = yield_stress + K rate^exponent"),
-        law, mud, mud));
-    table.push_back(with(
+        mud));
+    table.push_back(of_laws(
         number("stage.exponent", "1", above_to(0.0, 2.0), "n of herschel_bulkley, below one for what thins with shear"),
-        law, mud, mud));
-    table.push_back(with(number("stage.friction_angle_deg", "degree", {0.0, 90.0, false, true},
-                                "internal friction angle of drucker_prager"),
-                         law, {"drucker_prager"}, {"drucker_prager"}));
+        mud));
+    table.push_back(of_laws(number("stage.friction_angle_deg", "degree", {0.0, 90.0, false, true},
+                                   "internal friction angle of drucker_prager"),
+                            sand));
+    table.push_back(of_laws(number("stage.cohesion", "Pa", not_negative, 0.0, "cohesion of drucker_prager")));
     table.push_back(
-        with(number("stage.cohesion", "Pa", not_negative, 0.0, "cohesion of drucker_prager"), law, {"drucker_prager"}));
+        of_laws(choice("stage.cone", {"triaxial", "plane_strain"}, "triaxial",
+                       "where drucker_prager is as strong as Mohr and Coulomb's law of that angle: in triaxial "
+                       "compression, or in plane strain, as heaps and slopes fail")));
     table.push_back(
-        with(choice("stage.cone", {"triaxial", "plane_strain"}, "triaxial",
-                    "where drucker_prager is as strong as Mohr and Coulomb's law of that angle: in triaxial "
-                    "compression, or in plane strain, as heaps and slopes fail"),
-             law, {"drucker_prager"}));
-    table.push_back(
-        with(number("stage.young_modulus", "Pa", positive,
-                    "stiffness of drucker_prager or elastic; the stiffer, the more steps: about 100 density "
-                    "gravity depth is enough"),
-             law, {"drucker_prager", "elastic"}, {"drucker_prager", "elastic"}));
-    table.push_back(with(number("stage.poisson_ratio", "1", {0.0, 0.5, false, true}, 0.3,
-                                "share of a strain that shows across it, of drucker_prager or elastic"),
-                         law, {"drucker_prager", "elastic"}));
+        of_laws(number("stage.young_modulus", "Pa", positive,
+                       "stiffness of drucker_prager or elastic; the stiffer, the more steps: about 100 density "
+                       "gravity depth is enough"),
+                solid::words_with("young_modulus")));
+    table.push_back(of_laws(number("stage.poisson_ratio", "1", {0.0, 0.5, false, true}, 0.3,
+                                   "share of a strain that shows across it, of drucker_prager or elastic")));
 }
 
 }  // namespace

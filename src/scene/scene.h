@@ -16,7 +16,7 @@
 #include "law/erosion/laws.h"
 #include "law/free_water.h"
 #include "law/rheology/law_map.h"
-#include "law/solid_law.h"
+#include "law/solid/laws.h"
 #include "law/structured_law.h"
 #include "law/water_friction.h"
 #include "particles/seeds.h"

@@ -239,22 +239,15 @@ private:
                 "give stage.viscosity and stage.yield_stress, or remove what makes material.rheology differ");
         if (law == "of_bed") {
             stage.of_bed = true;
-            for (const char* name : {"yield_stress", "shear_modulus", "friction_angle_deg", "cohesion", "cone",
-                                     "young_modulus", "poisson_ratio", "consistency", "exponent"})
-                if (given(name)) unused(name, "drucker_prager by the bed's friction");
+            refuse_others("drucker_prager by the bed's friction", {"sound_speed", "viscosity"});
             return solid::DruckerPrager::of({}, std::atan(friction_at_rest(scene_.bed_law)), 0.0);
         }
+        refuse_keys_of_others(law);
         if (law == "drucker_prager" || law == "elastic") {
-            for (const char* name : {"viscosity", "yield_stress", "shear_modulus", "sound_speed"})
-                if (given(name)) unused(name, law);
             const solid::Elastic elastic = solid::Elastic::of(number("young_modulus"), number("poisson_ratio"));
             if (law == "elastic") return elastic;
             return drucker_prager(elastic);
         }
-        for (const char* name : {"friction_angle_deg", "cohesion", "cone", "young_modulus", "poisson_ratio"})
-            if (given(name)) unused(name, law);
-        for (const char* name : {"consistency", "exponent"})
-            if (law != "herschel_bulkley" && given(name)) unused(name, law);
         double viscosity = 0.0, yield_stress = 0.0;
         if (const auto* newtonian = std::get_if<rheology::Newtonian>(&scene_.rheology))
             viscosity = newtonian->viscosity;
@@ -262,11 +255,7 @@ private:
             viscosity = bingham->viscosity, yield_stress = bingham->yield_stress;
         if (const bed::Bingham* mud = mud_of_bed()) viscosity = mud->viscosity, yield_stress = mud->yield_stress;
         viscosity = number_or("viscosity", viscosity);
-        if (law == "fluid") {
-            for (const char* name : {"yield_stress", "shear_modulus"})
-                if (given(name)) unused(name, law);
-            return solid::Fluid{0.0, viscosity};
-        }
+        if (law == "fluid") return solid::Fluid{0.0, viscosity};
         yield_stress = number_or("yield_stress", yield_stress);
         if (!(yield_stress > 0.0))
             problems_.add(case_.place(prefix_ + "law"), fmt::format("found \"{}\" without a yield stress", law),
@@ -274,7 +263,6 @@ private:
         constexpr double kStiff = 100.0;  // yield stresses: stiffer costs steps and changes nothing
         const double shear = number_or("shear_modulus", kStiff * yield_stress);
         if (law == "bingham") return solid::Bingham{0.0, shear, viscosity, yield_stress};
-        if (given("viscosity")) unused("viscosity", law);
         return solid::HerschelBulkley{0.0, shear, number("consistency"), number("exponent"), yield_stress};
     }
 
@@ -291,6 +279,20 @@ private:
         const bool plane = case_.word(prefix_ + "cone") == "plane_strain";
         return solid::DruckerPrager::of(elastic, angle * constants::kDegree, cohesion,
                                         plane ? solid::Cone::plane_strain : solid::Cone::compression);
+    }
+
+    /// Keys that only other laws have.
+    void refuse_keys_of_others(const std::string& law) {
+        std::vector<std::string> own;
+        for (const std::string& key : solid::all_keys()) {
+            const std::vector<std::string> laws = solid::words_with(key);
+            if (std::find(laws.begin(), laws.end(), law) != laws.end()) own.push_back(key);
+        }
+        refuse_others(law, own);
+    }
+    void refuse_others(const std::string& law, const std::vector<std::string>& own) {
+        for (const std::string& key : solid::all_keys())
+            if (given(key.c_str()) && std::find(own.begin(), own.end(), key) == own.end()) unused(key.c_str(), law);
     }
 
     void unused(const char* name, const std::string& law) {

@@ -8,7 +8,7 @@
 namespace frana {
 
 /// 3D points. Positions are in cells from node (0, 0, 0); all else is SI. A law has up to six numbers
-/// of its own for each point (law/solid_law.h). Columns that no law needs are empty.
+/// of its own for each point (law/solid/laws.h). Columns that no law needs are empty.
 struct MaterialPoints {
     std::array<Array, 3> x;         ///< position [cells]
     std::array<Array, 3> v;         ///< velocity [m/s]

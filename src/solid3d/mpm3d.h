@@ -6,7 +6,7 @@
 
 #include "base/clock.h"
 #include "base/constants.h"
-#include "law/solid_law.h"
+#include "law/solid/laws.h"
 #include "mpm/ledger.h"
 #include "mpm/step_clock.h"
 #include "observe/frame.h"

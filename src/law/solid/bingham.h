@@ -1,0 +1,44 @@
+#pragma once
+#include <cmath>
+
+#include "law/solid/yield_stress.h"
+
+namespace frana::solid {
+
+/// src/solid3d/THEORY.md (17), (18): the same with a yield stress. Below it an elastic solid of shear modulus G, above it Bingham's
+/// fluid. The viscous flow is solved in the step, so that any viscosity is stable and material at rest really rests.
+struct Bingham {
+    static constexpr const char* name = "bingham";
+    static constexpr const char* keys[] = {"viscosity", "yield_stress", "shear_modulus", "sound_speed"};
+    static constexpr int kStates = 6;  ///< deviatoric stress [Pa]
+    static constexpr bool kAverages = true;
+    double bulk = 1.0;          ///< K [Pa]
+    double shear = 1.0;         ///< G [Pa]; a hundred yield stresses are stiff enough
+    double viscosity = 0.0;     ///< [Pa s]
+    double yield_stress = 0.0;  ///< tau_Y [Pa], of sqrt(s:s / 2)
+
+    template <class Real>
+    [[gnu::always_inline]] SymOf<Real> stress(Real j, const Given<Real>* state, const Square<Real>&) const {
+        return SymOf<Real>::read(state).plus_isotropic(-bulk * max(1.0 - j, Real{})) * j;
+    }
+    /// Elastic trial, then flow: of the stress beyond the yield stress what a viscous element in series
+    /// leaves after dt.
+    template <class Real>
+    [[gnu::always_inline]] void update(const DeformationOf<Real>& d, Real& j, Given<Real>* state) const {
+        j = min(j * (1.0 + d.dt * trace<Real>(d.gradient)), Real{} + 1.0);
+        const SymOf<Real> trial = spun<Real>(SymOf<Real>::read(state), d) +
+                                  SymOf<Real>::of(d.gradient).deviator() * (Real{} + 2.0 * shear * d.dt);
+        const double relaxation = viscosity / (shear * d.dt);
+        const Real size = trial.norm() * std::sqrt(0.5), divisor = select(size > 0.0, size, Real{} + 1.0);
+        const Real left = (size * relaxation + yield_stress) / ((1.0 + relaxation) * divisor);
+        (trial * select(size > yield_stress, left, Real{} + 1.0)).deviator().write(state);
+    }
+    template <class Real>
+    [[gnu::always_inline]] Real stored(Real j, const Given<Real>* state) const {
+        return stored_in(j, SymOf<Real>::read(state), bulk, shear);
+    }
+    double sound_speed(double density) const { return std::sqrt((bulk + 4.0 / 3.0 * shear) / density); }
+    double explicit_viscosity() const { return 0.0; }
+};
+
+}  // namespace frana::solid
