@@ -5,8 +5,9 @@
 
 namespace frana::solid {
 
-/// src/solid3d/THEORY.md (17), (18): the same with a yield stress. Below it an elastic solid of shear modulus G, above it Bingham's
-/// fluid. The viscous flow is solved in the step, so that any viscosity is stable and material at rest really rests.
+/// src/solid3d/THEORY.md (17), (18): the same with a yield stress. Below it an elastic solid of shear modulus G, above it
+/// Bingham's fluid. The viscous flow is solved in the step, so that any viscosity is stable and material at rest really
+/// rests.
 struct Bingham {
     static constexpr const char* name = "bingham";
     static constexpr const char* keys[] = {"viscosity", "yield_stress", "shear_modulus", "sound_speed"};

@@ -10,9 +10,9 @@ namespace frana::solid {
 /// then agree.
 enum class Cone { compression, plane_strain };
 
-/// src/solid3d/THEORY.md (21), (22): sand, soil. It is elastic as above within the cone |s| = alpha (p + p_t) of Drucker and Prager,
-/// in Kirchhoff stress, p_t = c cot(phi). Flow conserves the volume (no dilatancy). At the apex the material parts: it
-/// carries the tension p_t and no more. The volume it gained has to be closed before it carries pressure again
+/// src/solid3d/THEORY.md (21), (22): sand, soil. It is elastic as above within the cone |s| = alpha (p + p_t) of Drucker
+/// and Prager, in Kirchhoff stress, p_t = c cot(phi). Flow conserves the volume (no dilatancy). At the apex the material
+/// parts: it carries the tension p_t and no more. The volume it gained has to be closed before it carries pressure again
 /// (Tampubolon et al. 2017, sec. 4.3.4).
 struct DruckerPrager {
     static constexpr const char* name = "drucker_prager";

@@ -5,8 +5,8 @@
 
 namespace frana::solid {
 
-/// src/solid3d/THEORY.md (20): Hencky's elastic solid, Kirchhoff stress linear in the logarithmic strain, tau = 2 G e + lambda tr(e)
-/// I. Agrees with the linear theory for small strain, and stays objective for any rotation.
+/// src/solid3d/THEORY.md (20): Hencky's elastic solid, Kirchhoff stress linear in the logarithmic strain, tau = 2 G e +
+/// lambda tr(e) I. Agrees with the linear theory for small strain, and stays objective for any rotation.
 struct Elastic {
     static constexpr const char* name = "elastic";
     static constexpr const char* keys[] = {"young_modulus", "poisson_ratio"};

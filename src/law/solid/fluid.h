@@ -5,7 +5,8 @@
 
 namespace frana::solid {
 
-/// src/solid3d/THEORY.md (16): weakly compressible fluid, p = K (1 - J), never tension (J is cut at 1). Newtonian viscosity.
+/// src/solid3d/THEORY.md (16): weakly compressible fluid, p = K (1 - J), never tension (J is cut at 1). Newtonian
+/// viscosity.
 struct Fluid {
     static constexpr const char* name = "fluid";
     static constexpr const char* keys[] = {"viscosity", "sound_speed"};

@@ -5,8 +5,8 @@
 
 namespace frana::solid {
 
-/// src/solid3d/THEORY.md (19): Herschel and Bulkley's fluid, as Bingham's above. But beyond the yield stress tau = tau_Y + K rate^n:
-/// mud thins with shear, n < 1. In pure shear of rate gamma: tau = tau_Y + K gamma^n.
+/// src/solid3d/THEORY.md (19): Herschel and Bulkley's fluid, as Bingham's above. But beyond the yield stress tau = tau_Y +
+/// K rate^n: mud thins with shear, n < 1. In pure shear of rate gamma: tau = tau_Y + K gamma^n.
 struct HerschelBulkley {
     static constexpr const char* name = "herschel_bulkley";
     static constexpr const char* keys[] = {"consistency", "exponent", "yield_stress", "shear_modulus", "sound_speed"};
