@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "catch.h"
 #include "coupling/staged_run.h"
+#include "observe/budget.h"
 #include "observe/memory_archive.h"
 #include "run/run_loop.h"
 #include "terrain/holes.h"
@@ -32,6 +33,16 @@ Scene slide(double from = 0.4) {
     stage.spacing = 0.25;
     stage.law = solid::Fluid{};
     scene.solid = stage;
+    return scene;
+}
+
+/// The same over loose ground that ends before the window.
+Scene over_loose_ground() {
+    Scene scene = slide();
+    scene.erodible = ErodibleBed{};
+    scene.erodible->law = erosion::Growth{0.05};
+    scene.erodible->density = scene.density;
+    scene.erodible->depth = sampled(scene.bed.geometry, [](double x, double) { return x < 7.5 ? 0.5 : 0.0; });
     return scene;
 }
 
@@ -512,6 +523,37 @@ void take_up_again(const Scene& scene, const std::vector<double>& stops, double 
 
 TEST_CASE("Runs in stages have the same bits for any number of threads, and when taken up again", "[stages][threads]") {
     take_up_again(slide(), {0.3, 0.55}, 0.7, false);
+}
+
+TEST_CASE("So have runs whose columns take up their bed before the window", "[stages][threads][erosion]") {
+    take_up_again(over_loose_ground(), {0.3, 0.55}, 0.7, false);
+}
+
+TEST_CASE("Columns take up their bed before and beside a 3D stage, and the bed in its window stays",
+          "[stages][erosion]") {
+    const Scene scene = over_loose_ground();
+    StagedRun run(scene);
+    const Status first = run.frame().status;
+    double before = 0.0;
+    while (run.status().time < scene.end) {
+        run.advance(scene.end);
+        CHECK(std::abs(budget(first, run.status()).mass_error) <= 1e-13);
+        if (!run.points()) before = run.status().bed.eroded;
+    }
+    CHECK(before > 0.02 * first.mass);
+    CHECK(run.status().bed.eroded > before);  // the tail goes on
+    CHECK(run.points()->status().points > 1000);
+    const Frame frame = run.frame();
+    const Field& elevation = *frame.node("elevation");
+    const std::array<Index, 4>& w = scene.solid->window;
+    double deepest = 0.0;
+    for (Index j = 0; j < frame.grid.ny; ++j)
+        for (Index i = 0; i < frame.grid.nx; ++i) {
+            const double sunk = scene.bed.at(i, j) - elevation.data[j * frame.grid.nx + i];
+            deepest = std::max(deepest, sunk);
+            if (i >= w[0] - 2) CHECK(sunk == 0.0);
+        }
+    CHECK(deepest > 0.05);
 }
 
 TEST_CASE("So have runs whose ground brakes points by the whole bed law", "[stages][threads]") {

@@ -16,8 +16,9 @@ namespace frana {
 
 namespace {
 
-Scene on_bed(Scene scene, Raster bed) {
-    scene.bed = std::move(bed);
+/// The scene of the columns: to them barriers are ground.
+Scene of_columns(Scene scene, Footings& footings) {
+    if (!scene.barriers.empty()) footings = stand_in(scene, barrier_nodes(scene), 0, 0);
     return scene;
 }
 
@@ -25,8 +26,7 @@ Scene on_bed(Scene scene, Raster bed) {
 
 StagedRun::StagedRun(const Scene& scene, Start start)
     : scene_(scene),
-      columns_(
-          std::make_unique<DepthAveraged>(scene.barriers.empty() ? scene : on_bed(scene, with_barriers(scene)), start)),
+      columns_(std::make_unique<DepthAveraged>(of_columns(scene, footings_), start)),
       map_(scene),
       spray_(scene) {
     expect(scene.solid.has_value(), "a staged run has a 3D stage");
@@ -383,6 +383,7 @@ void StagedRun::remark_walls(std::vector<std::string>& remarks) const {
 
 std::vector<std::string> StagedRun::remarks() const {
     std::vector<std::string> remarks = columns_->remarks();
+    for (std::string& remark : remarks_on(footings_)) remarks.push_back(std::move(remark));
     if (!points_) return remarks;
     remark_walls(remarks);
     if (watch_)

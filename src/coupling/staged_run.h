@@ -111,6 +111,7 @@ private:
     void node_fields(Frame& frame);
 
     Scene scene_;
+    Footings footings_;  ///< what barriers stand on
     std::unique_ptr<DepthAveraged> columns_;
     std::unique_ptr<Mpm3d> points_;
     SolidStart start_;

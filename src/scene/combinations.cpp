@@ -209,10 +209,6 @@ void add_erodible_bed(std::vector<Combination>& table) {
                          {erodible},
                          "expected \"none\": a mass that holds together, and free water, take up no bed",
                          "remove one of them"});
-    table.push_back({{"stage", Are::tables},
-                     {erodible},
-                     "expected none: points in 3D take up no bed",
-                     "remove the stage, or the erodible bed"});
 }
 
 /// Where material cannot be left behind as bed.

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "law/catalogue.h"
 #include "particles/outline_area.h"
 #include "scene/nodes_of_place.h"
+#include "terrain/part_of.h"
 
 namespace frana {
 namespace {
@@ -97,6 +99,23 @@ void keep_inside(const CaseFile& file, const GisReader& reader, Scene& scene, Ra
     remark_on_outline(file, outline, inside / all, scene);
 }
 
+/// 3D points take up no bed: it is firm in their window, and around it as far as they and columns act on each other.
+void leave_window_out(const SolidStage& stage, Raster& depth, Scene& scene) {
+    const GridGeometry& g = depth.geometry;
+    const auto reach = 2 + static_cast<Index>(std::ceil(1.5 + 3.0 * stage.cell / g.cell));
+    const std::array<Index, 4>& w = stage.window;
+    const NodeBox firm = common(widened({w[0], w[1], w[2] - w[0] + 1, w[3] - w[1] + 1}, reach), NodeBox::all(g));
+    double volume = 0.0;
+    for (Index j = firm.j0; j < firm.j0 + firm.ny; ++j)
+        for (Index i = firm.i0; i < firm.i0 + firm.nx; ++i)
+            volume += g.cell * g.cell * std::exchange(depth.at(i, j), 0.0);
+    if (volume > 0.0)
+        scene.log.push_back(fmt::format(
+            "erodible: {:.6g} m3 of loose material in the window of the 3D stage, and around it, are taken for firm: "
+            "3D points take up no bed",
+            volume));
+}
+
 /// What seems to be a mistake.
 void remark_on_depth(const CaseFile& file, const Raster& depth, Scene& scene) {
     constexpr double kDeep = 50.0;  // [m]
@@ -154,6 +173,7 @@ std::optional<ErodibleBed> read_erodible(const CaseFile& file, const GisReader& 
     if (file.given("erodible.outline") &&
         !problems.attempt(file.place("erodible.outline"), [&] { keep_inside(file, reader, scene, bed.depth); }))
         return {};
+    if (scene.solid) leave_window_out(*scene.solid, bed.depth, scene);
     remark_on_depth(file, bed.depth, scene);
     remark_on_waves(file, bed, scene);
     return bed;
