@@ -128,7 +128,7 @@ public:
         for (std::size_t k = 0; k < depths_.size(); ++k) {
             const Sample flow = probe.at(event_.gauges_[k].point);
             depths_[k] = std::max(depths_[k], flow.depth);
-            if (flow.depth > event_.limit_) speeds_[k] = std::max(speeds_[k], flow.velocity.norm());
+            if (flow.depth > event_.limit_) speeds_[k] = std::max(speeds_[k], flow.speed);
         }
     }
 

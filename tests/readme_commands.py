@@ -15,7 +15,7 @@ import sys
 # Commands of minutes: what is run in their place. The options are the same, the amount of work is not.
 SHORTENED = {
     "frana verify --json verify.json": "frana verify --json verify.json lake_z1 --cells 10",
-    "frana verify --study": None,  # 20 minutes, and it has no shorter form: ctest "verification" runs the problems
+    "frana verify --study": None,  # a minute, and it has no shorter form: ctest "verification" runs the problems
     "frana verify --figure work_precision.png": None,  # as --study
     "frana verify stoker similarity --cells 80,160": "frana verify stoker similarity --cells 40",
     "frana verify conversion --cells 250,500,1000,1500,2000": "frana verify conversion --cells 50,100",

@@ -11,7 +11,7 @@ namespace frana {
 /// The largest of a gauge, where the flow came deeper than the footprint depth; nothing where it never did.
 struct GaugePeak {
     std::optional<double> depth;    ///< [m]
-    std::optional<double> speed;    ///< along the map, as in the tables of gauges [m/s]
+    std::optional<double> speed;    ///< along the bed, as in the tables of gauges [m/s]
     std::optional<double> arrival;  ///< the first time of it [s]
 };
 

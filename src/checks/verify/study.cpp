@@ -23,7 +23,7 @@ Component with(const std::string& name, Member member, Number number) {
 const std::vector<Component>& components() {
     static const std::vector<Component> all = {
         {"default", {}},
-        with("shape linear", &Scheme::shape, Shape::linear),
+        {"shape linear", [](Scene& s) { s.scheme.shape = Shape::linear, s.scheme.cfl = 0.5; }},  // its default
         with("shape cubic", &Scheme::shape, Shape::cubic),
         with("transfer apic", &Scheme::transfer, Transfer::apic),
         with("transfer flip", &Scheme::transfer, Transfer::flip),
@@ -43,7 +43,7 @@ const std::vector<Component>& components() {
         with("split at 0.3 m_max", &Scheme::split_min_mass, 0.3),
         with("no mass fit", &Scheme::mass_fit, false),
         with("cfl 0.25", &Scheme::cfl, 0.25),
-        with("cfl 0.9", &Scheme::cfl, 0.9),
+        with("cfl 0.5", &Scheme::cfl, 0.5),
         {"1 point a cell", [](Scene& s) { s.scheme.split_length = 1.2; }, 1},
         {"9 points a cell", {}, 3},
     };
