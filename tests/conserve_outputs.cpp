@@ -64,6 +64,78 @@ Outcome run_with(const Scene& scene, double every, double end) {
 
 }  // namespace
 
+namespace {
+
+/// All bits of the frames that it is shown. Requests an interrupt with the frame of that number.
+class FrameBits final : public Observer {
+public:
+    FrameBits(std::vector<std::vector<double>>& frames, Interrupt* interrupt, std::size_t at)
+        : frames_(frames), interrupt_(interrupt), at_(at) {}
+    std::string name() const override { return "bits"; }
+    void observe(const Frame& frame) override {
+        std::vector<double> bits = {frame.status.time};
+        for (const auto* fields : {&frame.particles, &frame.nodes})
+            for (const Field& field : *fields)
+                bits.insert(bits.end(), field.data, field.data + field.count * field.components);
+        frames_.push_back(std::move(bits));
+        if (interrupt_ && frames_.size() == at_) interrupt_->request();
+    }
+
+private:
+    std::vector<std::vector<double>>& frames_;
+    Interrupt* interrupt_;
+    std::size_t at_;
+};
+
+class InMemory final : public StateKeeper {
+public:
+    bool due() const override { return false; }
+    void save(double, const State& state) override {
+        kept_.emplace();
+        state(*kept_);
+    }
+    bool load(const State& state) override {
+        if (kept_) state(kept_->rewind());
+        return kept_.has_value();
+    }
+
+private:
+    std::optional<MemoryArchive> kept_;
+};
+
+/// Frames of a run whose steps pass several outputs each.
+std::vector<std::vector<double>> frames_of(const Scene& scene, InMemory* keeper, bool resumed, std::size_t until = 0) {
+    std::vector<std::vector<double>> frames;
+    Interrupt interrupt;
+    DepthAveraged simulation(scene, resumed ? Start::resumed : Start::placed);
+    Observers observers;
+    observers.push_back(std::make_unique<FrameBits>(frames, until > 0 ? &interrupt : nullptr, until));
+    std::ostringstream stream;
+    Progress progress(stream, Progress::Style::silent, scene.density);
+    run(simulation, {2.0, 0.05, false}, observers, interrupt, progress, keeper);
+    return frames;
+}
+
+}  // namespace
+
+TEST_CASE("Frames of a run that was stopped between outputs of one step have the same bits when it goes on",
+          "[conserve][resume]") {
+    const Scene scene = gully();
+    const auto whole = frames_of(scene, nullptr, false);
+    REQUIRE(whole.size() == 41);
+    for (const std::size_t until : {2, 3, 7, 8, 9}) {
+        InMemory keeper;
+        auto frames = frames_of(scene, &keeper, false, until);
+        REQUIRE(frames.size() >= until);
+        REQUIRE(frames.size() < whole.size());
+        const std::size_t before = frames.size();
+        for (auto& frame : frames_of(scene, &keeper, true)) frames.push_back(std::move(frame));
+        CAPTURE(until, before);
+        REQUIRE(frames.size() == whole.size());
+        for (std::size_t n = 0; n < whole.size(); ++n) CHECK((frames[n] == whole[n]));
+    }
+}
+
 TEST_CASE("A run has the same bits whatever the time between its frames, which are hit exactly", "[conserve]") {
     constexpr double kEnd = 40.0;
     for (const Scheme& scheme : {Scheme{}, [] {

@@ -58,17 +58,39 @@ Scene scene_of(const EnsemblePlan& plan, const std::vector<std::string>& sets, c
     return build_scene(CaseFile::read(plan.case_file, quiet(sets)), reader, meshes);
 }
 
+/// Where runouts are measured from and along.
+struct Way {
+    std::optional<Vec2> start;
+    Polyline path;
+};
+
+Way way_of(const Scene& scene) {
+    Way way{flow_start(scene), {}};
+    if (way.start) way.path = steepest_path(scene.bed, *way.start);
+    if (!(length_of(way.path) > 0.0)) way.path.clear();
+    return way;
+}
+
+/// The base's, so that runs compare. A flow that begins more than a cell from there has its own.
+Way way_of(const Scene& scene, const EnsembleBase& base) {
+    const std::optional<Vec2> start = flow_start(scene);
+    if (start && base.start && (*start - *base.start).norm() <= base.whole.cell) return {base.start, base.path};
+    return way_of(scene);
+}
+
 /// Distances, and how far the extent is the surveyed one.
-void measure_extent(const EnsembleBase& base, const Raster& depth, SampleResult& result) {
+void measure_extent(const EnsembleBase& base, const Scene& scene, const Raster& depth, SampleResult& result) {
     const Rings outline = pixel_outline(depth, base.footprint_depth);
     const double cell = base.whole.cell;
     if (base.survey) {
         result.iou = overlap(depth, base.footprint_depth, *base.survey).iou();
         if (!outline.empty()) result.boundary = distance_between(outline, *base.survey, cell).mean;
     }
-    if (!base.start || outline.empty()) return;
-    result.reach = farthest_from(*base.start, outline);
-    result.runout = base.path.empty() ? result.reach : reach_along(base.path, outline, cell);
+    if (outline.empty()) return;
+    const Way way = way_of(scene, base);
+    if (!way.start) return;
+    result.reach = farthest_from(*way.start, outline);
+    result.runout = way.path.empty() ? result.reach : reach_along(way.path, outline, cell);
 }
 
 void measure(const Scene& scene, const EnsembleBase& base, const RunSummary& run, const LastPeaks& peaks,
@@ -96,7 +118,7 @@ void measure(const Scene& scene, const EnsembleBase& base, const RunSummary& run
     result.volume = flowed / scene.density;
     result.left_share = flowed > 0.0 ? last.mass_left / flowed : 0.0;
     result.mass_error = budget(run.first, last).mass_error;
-    measure_extent(base, depth, result);
+    measure_extent(base, scene, depth, result);
 }
 
 void run_scene(const EnsemblePlan& plan, const EnsembleBase& base, const Scene& scene, const Interrupt& interrupt,
@@ -147,9 +169,8 @@ EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, co
     base.gauges = scene.gauges;
     base.bed_changes = scene.bed_changes();
     base.barriers = scene.barriers;
-    base.start = flow_start(scene);
-    if (base.start) base.path = steepest_path(scene.bed, *base.start);
-    if (!(length_of(base.path) > 0.0)) base.path.clear();
+    Way way = way_of(scene);
+    base.start = way.start, base.path = std::move(way.path);
     base.footprint = scene.survey;
     if (scene.survey) base.survey = rings_of(*scene.survey);
     require_kept_thresholds(plan, base.footprint_depth, "ensemble");

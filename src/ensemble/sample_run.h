@@ -28,7 +28,7 @@ struct EnsembleBase {
     bool bed_changes = false;           ///< it is erodible, or something can be left behind
     std::vector<Gauge> gauges;          ///< of the case
     std::vector<Barrier> barriers;      ///< of the case, which maps show
-    Polyline path;                      ///< that all runouts are measured along; empty: none is known
+    Polyline path;                      ///< from there, that runouts are measured along; empty: none is known
 };
 
 /// Nothing is stored below the footprint depth [m], so no threshold may lie there. Throws UserError, which names

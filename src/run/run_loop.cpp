@@ -78,7 +78,8 @@ private:
     void step_past_outputs();
     double show_outputs_aside();
     std::string reason_to_stop() const;
-    double next_output_time() const;
+    double output_time(Index number) const;
+    double next_output_time() const { return output_time(outputs_ + 1); }
     void show_step();
     void show_between();
     void show_frame();
@@ -168,10 +169,13 @@ double Loop::show_outputs_aside() {
     if (!(next_output_time() < past)) return time();
     PhaseTime& cost = summary_.output[frame_phase_];
     timed(cost, [&] { aside_.save(simulation_); });
-    for (double next = next_output_time(); next < past && !interrupt_.requested(); next = next_output_time()) {
+    Index number = outputs_;  // of the last output that is not ahead: an interrupted run may have shown some that are
+    while (output_time(number) > time()) --number;
+    for (double next = 0.0; (next = output_time(++number)) < past && !interrupt_.requested();) {
         timed(cost, [&] {
             while (time() < next) step(next);
         });
+        if (number <= outputs_) continue;  // a step on the way to others, as it was then
         ++outputs_;
         show_frame();
     }
@@ -280,8 +284,8 @@ std::string Loop::reason_to_stop() const {
     return "";
 }
 
-double Loop::next_output_time() const {
-    const double time = static_cast<double>(outputs_ + 1) * plan_.every;
+double Loop::output_time(Index number) const {
+    const double time = static_cast<double>(number) * plan_.every;
     // k * every may fall a rounding error short of the end; two frames there would be one too many.
     return time > plan_.end - 1e-9 * plan_.every ? plan_.end : time;
 }

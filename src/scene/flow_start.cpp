@@ -1,6 +1,7 @@
 #include "scene/flow_start.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace frana {
 namespace {
@@ -38,15 +39,8 @@ std::optional<Vec2> middle_of_lake(const Scene& scene) {
     return nearest;
 }
 
-}  // namespace
-
-std::optional<Vec2> flow_start(const Scene& scene) {
-    Seeds all;
-    for (const Seeds* seeds : scene.all_particles()) all.append(*seeds, 0, seeds->count());
-    if (all.count() == 0) {
-        if (const std::optional<Vec2> lake = middle_of_lake(scene)) return lake;
-        return scene.inflows.empty() ? std::nullopt : std::optional<Vec2>(middle_of(scene.inflows.front()));
-    }
+/// The particle nearest to the middle of all.
+Vec2 middle_of(const Seeds& all) {
     const auto place = [&](std::size_t k) { return Vec2(all.x[k], all.y[k]); };
     Vec2 middle(0, 0);
     for (std::size_t k = 0; k < all.x.size(); ++k) middle += place(k) / static_cast<double>(all.count());
@@ -54,6 +48,32 @@ std::optional<Vec2> flow_start(const Scene& scene) {
     for (std::size_t k = 1; k < all.x.size(); ++k)
         if ((place(k) - middle).squaredNorm() < (place(nearest) - middle).squaredNorm()) nearest = k;
     return place(nearest);
+}
+
+/// When the first of it comes in [s].
+double begin_of(const Inflow& inflow) {
+    for (std::size_t k = 0; k + 1 < inflow.time.size(); ++k)
+        if (inflow.discharge[k] > 0.0 || inflow.discharge[k + 1] > 0.0) return inflow.time[k];
+    return std::numeric_limits<double>::infinity();
+}
+
+/// Of inflows and late releases the one that comes first. What enters when the flow reaches it begins no flow.
+std::optional<Vec2> middle_of_first(const Scene& scene) {
+    double first = std::numeric_limits<double>::infinity();
+    std::optional<Vec2> middle;
+    for (const Inflow& inflow : scene.inflows)
+        if (const double begin = begin_of(inflow); begin < first) first = begin, middle = middle_of(inflow);
+    for (const LateRelease& late : scene.late)
+        if (late.at && *late.at < first && late.seeds.count() > 0) first = *late.at, middle = middle_of(late.seeds);
+    return middle;
+}
+
+}  // namespace
+
+std::optional<Vec2> flow_start(const Scene& scene) {
+    if (scene.particles.count() > 0) return middle_of(scene.particles);
+    if (const std::optional<Vec2> lake = middle_of_lake(scene)) return lake;
+    return middle_of_first(scene);
 }
 
 std::optional<Vec2> start_of_what_comes_in(const Scene& scene) {

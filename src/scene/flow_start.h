@@ -6,8 +6,9 @@
 
 namespace frana {
 
-/// The particle nearest to the middle of all. Where a scene has none, the middle of a lake of water alone, or of the
-/// first inflow. Of an area, its patch nearest to its middle. Nothing where nothing flows.
+/// The particle nearest to the middle of those at the start. Where there are none, the middle of a lake of water alone.
+/// Else it is that of the inflow or the late release that comes first. Of an area it is the patch nearest to its middle.
+/// Nothing where nothing flows.
 std::optional<Vec2> flow_start(const Scene& scene);
 
 /// The same where nothing lies on the terrain at the start, nothing otherwise: then a run's rasters tell.
