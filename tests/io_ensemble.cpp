@@ -217,6 +217,41 @@ TEST_CASE("scenarios count by their weights", "[ensemble]") {
     for (const double p : pond.map("many", "probability_reached").values) CHECK(p == Approx(1.0));
 }
 
+TEST_CASE("a run's way begins at its own release, and not where one enters that never does", "[ensemble]") {
+    const PlaneCase plane;
+    const std::string laws = "[material.bed]\nlaw = \"coulomb\"\nmu = 0.05\n";
+    const auto square = [&](const char* name, double x) {
+        frana::write_text(plane.folder() / name,
+                          fmt::format(R"({{"type": "FeatureCollection", "features": [{{"type": "Feature", "properties":
+                          {{}}, "geometry": {{"type": "Polygon", "coordinates":
+                          [[[{0}, 30], [{1}, 30], [{1}, 70], [{0}, 70], [{0}, 30]]]}}}}]}})",
+                                      x, x + 30));
+    };
+    square("lower.geojson", 50.0);
+    square("far.geojson", 115.0);
+    plane.write(laws + "[[release]]\noutline = \"far.geojson\"\ndepth = 1.5\nwhen_hit = true\n");
+    frana::write_text(plane.folder() / "rows.csv", "release.0.outline\nrelease.geojson\nlower.geojson\n");
+    frana::write_text(plane.folder() / "many.toml",
+                      "[ensemble]\ncase = \"case.toml\"\nmethod = \"table\"\ntable = \"rows.csv\"\n");
+    REQUIRE(plane.frana("ensemble many.toml --out many --quiet").code == 0);
+    std::istringstream runs(text_of(plane.folder() / "many/runs.csv"));
+    std::string line;
+    std::getline(runs, line);
+    std::vector<std::string> head;
+    for (std::istringstream cells(line); std::getline(cells, line, ',');) head.push_back(line);
+    const auto column = std::find(head.begin(), head.end(), "runout_m") - head.begin();
+    std::vector<double> runout;
+    while (std::getline(runs, line)) {
+        std::istringstream cells(line);
+        for (std::ptrdiff_t n = 0; n <= column; ++n) std::getline(cells, line, ',');
+        runout.push_back(std::stod(line));
+    }
+    REQUIRE(runout.size() == 2);
+    // On a plane both go as far, to a pixel: 30 m lower, and in 2 s not as far as the release beyond.
+    CHECK(runout[0] > 10.0);
+    CHECK(std::abs(runout[0] - runout[1]) <= 5.0);
+}
+
 TEST_CASE("runs that fail count by their weight", "[ensemble]") {
     const Pond pond;
     pond.write(

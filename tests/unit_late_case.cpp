@@ -1,6 +1,7 @@
 // Releases that enter later, of a case: what they become, and what is refused.
 #include "catch.h"
 #include "scene/build_scene.h"
+#include "scene/flow_start.h"
 #include "slope_case.h"
 
 using namespace frana;
@@ -72,6 +73,20 @@ TEST_CASE("All releases may enter later, and their features' depths are one rele
     CHECK(scene.late[0].at == 3.0);
     CHECK(scene.late[1].at == 1.0);
     CHECK(scene.late[1].first_id == scene.late[0].seeds.count());
+}
+
+TEST_CASE("A flow begins with what lies there at the start, else with what comes first", "[scene][late][inflow]") {
+    const auto start = [](const std::string& text) { return flow_start(built(text)).value(); };
+    const auto in_first = [](const Vec2& at) { return at.y() < 2050.0; };
+    CHECK(in_first(start(kFirst)));
+    // Late releases pull no middle to themselves, whether they enter or not.
+    CHECK(start(kFirst + kSecond + "at = 7.5\n") == start(kFirst));
+    CHECK(start(kFirst + kSecond + "when_hit = true\n") == start(kFirst));
+    CHECK_FALSE(in_first(start(kFirst + "at = 7.5\n" + kSecond + "at = 3\n")));
+    CHECK(in_first(start(kFirst + "at = 2.5\n" + kSecond + "at = 3\n")));
+    const std::string inflow = "[[inflow]]\nline = [[1150, 2090], [1150, 2110]]\nvolume = 500\nduration = 20\n";
+    CHECK(start(inflow + kFirst + "at = 5\n").x() == Approx(1150.0));
+    CHECK(start(inflow + kFirst + "when_hit = true\n").x() == Approx(1150.0));
 }
 
 TEST_CASE("What a late release cannot be is said in a sentence", "[scene][late]") {
