@@ -145,6 +145,7 @@ private:
             for (std::size_t k = 0; k < mask.values.size(); ++k)
                 if (!(mask.values[k] > 0.0)) release.depth_field->values[k] = Raster::nodata;
         } else if (!depth_of_features_ && is_file("depth")) {
+            reader_.require_metres(case_.path(key("depth")));
             release.depth_field = raster(case_.path(key("depth")));
             remark_on_gaps(*release.depth_field, claimed(release, release.depth_field->geometry), place("depth"), log_);
             *release.depth_field = finer_field(*release.depth_field, bed_.geometry.cell);
@@ -161,6 +162,7 @@ private:
     Raster depth_on(const GridGeometry& grid, bool claimed, const NodeMarks& places) const {
         const char* name = given("surface") ? "surface" : "depth";
         const bool file = !depth_of_features_ && is_file(name);
+        if (file) reader_.require_metres(case_.path(key(name)));
         Raster field = file ? reader_.read_onto(case_.path(key(name)), grid, bed_.crs_wkt, log_)
                             : Raster::filled(grid, depth_number(name));
         if (field.source.empty()) field.source = key(name);
