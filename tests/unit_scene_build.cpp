@@ -432,6 +432,7 @@ TEST_CASE("Each polygon of an outline has the depth of its attribute", "[scene]"
         REQUIRE(problems.size() == 1);
         return problems[0];
     };
+    CHECK(refusal("outline = \"scars.gpkg\"\ndepth = \"field:h\"").find("no such attribute") != std::string::npos);
     gis.attributes["thickness_m"][1] = 0.0;
     CHECK(refusal(keys).find("release.0.depth: found a depth of 0 m in ") != std::string::npos);
     CHECK(refusal("depth = \"field:thickness_m\"").find("an attribute without an outline") != std::string::npos);

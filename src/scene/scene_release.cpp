@@ -32,7 +32,9 @@ public:
         release.name = case_.table_place(table_);
         bool good = true;
         if (given("outline")) good &= problems.attempt(place("outline"), [&] { release.outline = outline(); });
-        if (good && !depths_.empty()) return by_depth(release, problems);
+        if (!depth_attribute().empty()) {  // depths come with the outline
+            return good ? by_depth(release, problems) : std::vector<Release>();
+        }
         const char* depth_key = given("mask") ? "mask" : given("surface") ? "surface" : "depth";
         good &= problems.attempt(place(depth_key), [&] { set_depth(release); });
         good &= problems.attempt(place("velocity"), [&] { set_velocity(release); });
