@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/layer_name.h"
+#include "scene/nodes_of_place.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
@@ -53,6 +54,7 @@ private:
             same.crs_wkt = all.outline->crs_wkt, same.source = all.outline->source;
             same.parts.push_back(all.outline->parts[n]);
         }
+        remark_on_overlap(parts);
         std::vector<Release> releases;
         const bool good = problems.attempt(place("depth"), [&] {
             if (!(parts.begin()->first > 0.0))
@@ -68,6 +70,43 @@ private:
             }
         });
         return good ? releases : std::vector<Release>();
+    }
+
+    /// Polygons of one depth count once where they overlap. Those of other depths add up, which is rarely meant.
+    void remark_on_overlap(const std::map<double, Polygons>& parts) const {
+        if (parts.size() < 2) return;
+        const GridGeometry points = points_over(parts);
+        NodeMarks covered(static_cast<std::size_t>(points.size()), 0);
+        double twice = 0.0, more = 0.0;                                   // [m2], [m3]
+        for (auto part = parts.rbegin(); part != parts.rend(); ++part) {  // the deepest first
+            NodeMarks marks(covered.size(), 0);
+            for (const Polygon& polygon : part->second.parts) mark_inside(polygon, points, marks);
+            double again = 0.0;
+            for (std::size_t k = 0; k < marks.size(); ++k) {
+                again += marks[k] && covered[k] ? points.cell * points.cell : 0.0;
+                covered[k] |= marks[k];
+            }
+            twice += again, more += again * part->first;
+        }
+        if (!(twice > 0.0)) return;
+        log_.push_back(fmt::format(
+            "{}: polygons of {} overlap on about {:.3g} m2; their depths add up there, to about {:.3g} m3 more than by "
+            "the deepest of them; if that is not meant, cut them so that none overlaps another",
+            place("depth"), parts.begin()->second.source, twice, more));
+    }
+
+    /// Points all over the outline, some to a cell.
+    GridGeometry points_over(const std::map<double, Polygons>& parts) const {
+        constexpr double kPerCell = 4.0, kMost = 2000.0;  // along a side
+        Vec2 low(INFINITY, INFINITY), high(-INFINITY, -INFINITY);
+        for (const auto& part : parts)
+            for (const Polygon& polygon : part.second.parts)
+                for (const auto& ring : polygon.rings)
+                    for (const Vec2& corner : ring) low = low.cwiseMin(corner), high = high.cwiseMax(corner);
+        const Vec2 size = high - low;
+        const double step = std::max(bed_.geometry.cell / kPerCell, size.maxCoeff() / kMost);
+        const auto count = [&](double length) { return static_cast<Index>(std::ceil(length / step)); };
+        return {count(size.x()), count(size.y()), low.x() + 0.5 * step, low.y() + 0.5 * step, step};
     }
 
     /// Of "field:thickness_m"; empty for other depths.
