@@ -29,6 +29,16 @@ std::vector<ReleaseReport> reports_of(const BuiltScene& built) {
     return reports;
 }
 
+/// What the file holds, and what it has no place for: it says nothing of times.
+std::string content_text(const Scene& scene, const std::filesystem::path& file) {
+    Index late = 0;
+    for (const LateRelease& release : scene.late) late += release.seeds.count();
+    const Index there = scene.particles.count();
+    if (late == 0) return fmt::format("{} particles in {}\n", there, file.string());
+    return fmt::format("{} of {} particles in {}, those at the start; the {} that enter later are not in it\n", there,
+                       there + late, file.string(), late);
+}
+
 }  // namespace
 
 int particles_command(const ParticlesOptions& options) {
@@ -43,7 +53,7 @@ int particles_command(const ParticlesOptions& options) {
     make_folder_of(options.out);
     write(options.out, make_seeds_export(scene.particles, scene.density, scene.bed));
     std::cout << conservation_table(reports_of(built));
-    std::cout << fmt::format("{} particles in {}\n", scene.particles.count(), options.out.string());
+    std::cout << content_text(scene, options.out);
     return 0;
 }
 

@@ -111,7 +111,8 @@ TEST_CASE("a checkpoint that was cut at any byte is refused with one sentence", 
     for (std::size_t bytes = 0; bytes < whole.size(); bytes += bytes < 600 ? 1 : 97, ++cuts) {
         put(file, whole.substr(0, bytes));
         const std::string said = complaint(file);
-        refused += said.find("run without --resume") != std::string::npos && said.find('\n') == std::string::npos;
+        refused += said.find("run with --overwrite instead of --resume") != std::string::npos &&
+                   said.find('\n') == std::string::npos;
     }
     CHECK(refused == cuts);
     put(file, whole.substr(0, 10));
@@ -152,8 +153,8 @@ TEST_CASE("a checkpoint with any flipped bit is refused with one sentence", "[re
 TEST_CASE("a checkpoint that is not there, or lacks an entry, is refused", "[resume]") {
     const FreshFolder folder;
     const fs::path file = folder.path() / "checkpoint.h5";
-    CHECK_THAT(complaint(file), Contains("checkpoint.h5: not found; expected the state that a run keeps there; run "
-                                         "without --resume to start at the beginning"));
+    CHECK_THAT(complaint(file), Contains("checkpoint.h5: not found; expected the state that a run keeps there; "
+                                         "run with --overwrite instead of --resume to start at the beginning"));
     write(file);
     const CheckpointFile opened(file);
     double number = 0.0;

@@ -51,7 +51,7 @@ TEST_CASE("A mistake on the command line leaves with 2 and a sentence on stderr"
     CHECK_THAT(threads.err, Contains("--threads"));
     const Outcome resume = scene.frana("run CASE --resume");
     CHECK(resume.code == 2);
-    CHECK_THAT(resume.err, Contains("run without --resume"));
+    CHECK_THAT(resume.err, Contains("run with --overwrite instead of --resume"));
     const Outcome size = scene.frana("figures . --size 12");
     CHECK(size.code == 2);
     CHECK_THAT(size.err, Contains("WIDTHxHEIGHT"));

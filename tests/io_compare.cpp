@@ -197,6 +197,7 @@ TEST_CASE("What cannot be compared leaves with 2, one sentence, and the run as i
     write_text(slope.path() / "empty.geojson", R"({"type":"FeatureCollection","features":[]})");
     write_text(slope.path() / "away.geojson", feature("Polygon", "[[[915,15],[990,15],[990,85],[915,15]]]"));
     write_text(slope.path() / "dot.geojson", feature("LineString", "[[15,15],[15,15]]"));
+    write_text(slope.path() / "far.geojson", feature("LineString", "[[915,15],[990,15]]"));
     refused("run --survey line.geojson", "line.geojson: holds 1 line only");
     refused("run --survey empty.geojson", "empty.geojson: ");
     refused("run --survey away.geojson", "away.geojson: covers ");
@@ -204,6 +205,8 @@ TEST_CASE("What cannot be compared leaves with 2, one sentence, and the run as i
     refused("run --survey footprint.geojson --path gone.geojson", "gone.geojson: no such file");
     refused("run --survey footprint.geojson --path footprint.geojson", "holds 1 polygon only");
     refused("run --survey footprint.geojson --path dot.geojson", "dot.geojson: ");
+    refused("run --survey footprint.geojson --path far.geojson",
+            "far.geojson: found no point of its line on the terrain");
     refused("run --survey footprint.geojson --deposit gone.tif", "gone.tif: no such file");
     refused("run --survey footprint.geojson --deposit footprint.geojson", "footprint.geojson: cannot be opened");
     refused("run --survey footprint.geojson --json footprint.geojson", "found a file that this command reads");

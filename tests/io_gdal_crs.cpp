@@ -111,6 +111,44 @@ TEST_CASE("Elevations declared in feet are refused and cured, with or without me
     }
 }
 
+TEST_CASE("Depths declared in feet or centimetres are refused and cured; unknown units are taken as metres", "[gdal]") {
+    struct Kind {
+        const char* crs;
+        const char* unit;
+        double metres;  ///< 0: is accepted
+    };
+    const Kind kinds[] = {{"EPSG:32632", "ft", 0.3048},
+                          {"EPSG:32632", "cm", 0.01},
+                          {"EPSG:32632", "", 0.0},
+                          {"EPSG:32632", "m", 0.0},
+                          {"EPSG:32632", "Pa", 0.0},
+                          {"", "Feet", 0.3048},
+                          {"EPSG:32618+6360", "", 1200.0 / 3937.0}};
+    for (const Kind& kind : kinds) {
+        INFO(kind.crs << " " << kind.unit);
+        const FreshFolder folder;
+        RasterSpec spec;
+        spec.crs = kind.crs;
+        spec.unit = kind.unit;
+        spec.value = [](int column, int) { return 5.0 + column; };
+        const auto file = folder.path() / "depth.tif";
+        make_raster(file, spec);
+        if (kind.metres == 0.0) {
+            CHECK_NOTHROW(GdalReader().require_metres(file));
+            continue;
+        }
+        const std::string message = user_error([&] { GdalReader().require_metres(file); });
+        INFO(message);
+        CHECK(contains(message, "depth.tif: its values are declared in "));
+        CHECK(contains(message, "; expected metres; run: gdalbuildvrt "));
+        const std::string line = cure_in(message);
+        run_gdal_line(line);
+        const std::filesystem::path cured = line.substr(line.rfind(' ') + 1);
+        CHECK_NOTHROW(GdalReader().require_metres(cured));
+        CHECK(range(read(cured), true) == Approx(12.0 * kind.metres).epsilon(1e-6));
+    }
+}
+
 TEST_CASE("A compound CRS in metres is accepted and only its map part is carried on", "[gdal]") {
     const FreshFolder folder;
     RasterSpec spec;

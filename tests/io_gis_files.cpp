@@ -14,6 +14,7 @@
 #include "catch.h"
 #include "fake_simulation.h"
 #include "fresh_folder.h"
+#include "io/gdal_reader.h"
 #include "io/gdal_writer.h"
 #include "io/netcdf_series.h"
 #include "io_gdal_make.h"
@@ -174,6 +175,20 @@ TEST_CASE("Rasters are nodata outside the flow, keep zero inside of it, and read
         }
     CHECK(std::isnan(back.at(g.nx - 1, 0)));  // no terrain
     CHECK(back.at(g.nx - 1, g.ny - 1) == 0.0);
+}
+
+TEST_CASE("A CRS without a code is remarked upon, since footprint.geojson cannot name it", "[gis]") {
+    const Slope slope;
+    const auto warnings = [&](const char* out) {
+        return nlohmann::json::parse(text_of(slope.run(out) / "run.json"))["warnings"].dump();
+    };
+    CHECK_THAT(warnings("coded"), !Contains("footprint.geojson"));
+    std::vector<std::string> log;
+    Raster dem = GdalReader().read_dem(slope.path() / "dem.tif", {}, log);
+    dem.crs_wkt = wkt_of("+proj=tmerc +lat_0=0 +lon_0=9.00001 +k=0.9996 +x_0=500000 +y_0=0 +ellps=WGS84");
+    write_geotiff(slope.path() / "dem.tif", dem, "m", "a slope");
+    CHECK_THAT(warnings("custom"), Contains("footprint.geojson: found a CRS without an EPSG code") &&
+                                       Contains("open results.gpkg, which names it"));
 }
 
 TEST_CASE("A resumed run leaves the same bytes for a GIS; SOURCE_DATE_EPOCH dates its rasters", "[gis][resume]") {

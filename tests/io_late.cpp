@@ -49,6 +49,13 @@ TEST_CASE("The record, the report and the table tell when late releases entered,
     const Outcome check = plane.frana("check CASE");
     CHECK(check.code == 0);
     CHECK_THAT(check.out, Contains("enters when the flow reaches it") && Contains("enters at 3.3 s"));
+    const Outcome particles = plane.frana("particles CASE --out " + (plane.folder() / "p.csv").string());
+    CHECK(particles.code == 0);
+    const std::string rows = text_of(plane.folder() / "p.csv");
+    const auto written = std::count(rows.begin(), rows.end(), '\n') - 1;
+    CHECK_THAT(particles.out, Contains(fmt::format("\n{} of ", written)) &&
+                                  Contains("p.csv, those at the start; the ") &&
+                                  Contains("that enter later are not in it\n"));
     const fs::path dir = plane.folder() / "out";
     CHECK(plane.frana("run CASE --quiet --out " + dir.string()).code == 0);
     const Json json = record_of(dir), late = json["late_releases"];

@@ -152,10 +152,14 @@ TEST_CASE("what is no state of this case is refused with the reason, and the fol
     const Folder folder;
     const Outcome none = folder.run("--resume");
     CHECK(none.code == 2);
-    CHECK_THAT(none.err, Contains("out/checkpoint.h5: not found; expected the state that a run keeps there; run "
-                                  "without --resume to start at the beginning"));
+    CHECK_THAT(none.err, Contains("out/checkpoint.h5: not found; expected the state that a run keeps there; "
+                                  "run with --overwrite instead of --resume to start at the beginning"));
     CHECK_FALSE(fs::exists(folder.out()));
     REQUIRE(folder.run("--until 3").code == 0);
+    // Killed before its first state: the way out leads out.
+    fs::rename(folder.out() / "checkpoint.h5", folder.path() / "aside.h5");
+    CHECK_THAT(folder.run("--resume").err, Contains("run with --overwrite instead of --resume"));
+    REQUIRE(folder.run("--until 3 --overwrite").code == 0);
     const auto before = files_of(folder.out());
     const std::string report = text_of(folder.out() / "report.md");
     std::string arguments = "--resume", sentence;
@@ -163,7 +167,7 @@ TEST_CASE("what is no state of this case is refused with the reason, and the fol
         arguments += " --set material.bed.mu=0.3";
         sentence =
             "found the state of another case: material.bed.mu is 0.2 there and 0.3 here; give the case and the "
-            "--set it was left with, or run without --resume to start at the beginning";
+            "--set it was left with, or run with --overwrite instead of --resume to start at the beginning";
     }
     SECTION("another number of tables") {
         write_text(folder.path() / "case.toml",
@@ -178,7 +182,7 @@ TEST_CASE("what is no state of this case is refused with the reason, and the fol
         folder.write_dem(101.0);
         sentence =
             "out/checkpoint.h5: found a state from before the file dem.asc was changed; put the file back as it "
-            "was, or run without --resume to start at the beginning";
+            "was, or run with --overwrite instead of --resume to start at the beginning";
     }
     SECTION("another release") {
         std::string outline = text_of(folder.path() / "release.geojson");
@@ -235,9 +239,10 @@ TEST_CASE("a state is refused when any file that the case names has changed sinc
     }
     const Outcome refused = folder.run("--resume");
     CHECK(refused.code == 2);
-    CHECK(refused.err == "out/checkpoint.h5: found a state from before the file " + name +
-                             " was changed; put the file back as it was, or run without --resume to start at the "
-                             "beginning\n");
+    CHECK(refused.err ==
+          "out/checkpoint.h5: found a state from before the file " + name +
+              " was changed; put the file back as it was, or run with --overwrite instead of --resume to start at the "
+              "beginning\n");
 }
 
 TEST_CASE("the sum of an input is that of all the files that are read with it", "[resume]") {

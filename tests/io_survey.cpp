@@ -226,6 +226,12 @@ TEST_CASE("A surveyed deposit conserves its volume beyond the terrain, on the ru
     double volume = 0.0;
     for (const double h : deposit.values) volume += std::isnan(h) ? 0.0 : h * 100.0;
     CHECK(volume == Approx(400 * 100 * 1.5).epsilon(1e-12));
+    spec.unit = "ft";
+    make_raster(files / "feet.tif", spec);
+    CHECK(
+        contains(user_error([&] { GdalReader().read_deposit(files / "feet.tif", terrain, wkt_of("EPSG:32632"), log); }),
+                 "its values are declared in ft; expected metres"));
+    spec.unit.clear();
     spec.crs.clear();
     make_raster(files / "nowhere.tif", spec);
     const std::string message =

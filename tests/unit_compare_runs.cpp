@@ -131,6 +131,17 @@ TEST_CASE("A given path is used downhill, and its end is not the end of the runo
     CHECK_THAT(c.remarks[1], Catch::Contains("ends 70 m before"));
 }
 
+TEST_CASE("Of a given path that begins beyond the terrain nothing tells that it is drawn downhill", "[nan]") {
+    const ComparedFlow flow(350);
+    Survey survey;
+    survey.footprint = {{box(50, 50, 300, 150)}, "", "survey.geojson"};
+    survey.path = Polyline{{-500, 100}, {400, 100}};
+    survey.path_source = "track.geojson";
+    const Comparison c = compare(flow.run(), survey);
+    REQUIRE_FALSE(c.remarks.empty());
+    CHECK_THAT(c.remarks[0], Catch::Contains("track.geojson: found an end of the path where the terrain has no elev"));
+}
+
 TEST_CASE("Where the flow leaves the way of water, the runout is put in doubt") {
     ComparedFlow flow(300);
     // a valley across: the water turns north at x = 300 m, the survey goes on up the opposite slope

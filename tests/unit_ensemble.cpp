@@ -231,6 +231,8 @@ TEST_CASE("Samples can come from a table, with weights", "[ensemble]") {
     REQUIRE(plan.samples == 2);
     CHECK(plan.sets_of(1) == std::vector<std::string>{"material.bed.mu=0.2", "material.bed.xi=400"});
     CHECK(plan.points[1].weight == 1.5);
+    file.write("rows.csv", "\xEF\xBB\xBFmaterial.bed.mu\r\n0.15\r\n");  // as Excel does
+    CHECK(file.read(text).sets_of(0) == std::vector<std::string>{"material.bed.mu=0.15"});
     file.write("rows.csv", "material.bed.nu\n0.1,3\n");
     CHECK_THAT(file.complaint(text), Contains("found \"material.bed.nu\"; expected a key of a case file, or weight") &&
                                          Contains("found 2 values; expected 1"));

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "catch.h"
+#include "fresh_folder.h"
 #include "law/bed/normal_flow.h"
 #include "scene/inflow_table.h"
 #include "shallow/feed.h"
@@ -41,6 +42,14 @@ TEST_CASE("A table of discharge is read whatever its marks and units", "[inflow]
     CHECK(minutes.velocity == std::vector<double>{2, 4});
     CHECK(parse_hydrograph("t_h discharge [m3/s]\n0 1\n0.5 3\n", "q.csv").time[1] == 1800.0);
     CHECK(parse_hydrograph("time [min]\tdischarge [m^3/s]\n0\t1\n2\t3\n", "q.csv").time[1] == 120.0);
+}
+
+TEST_CASE("A table of discharge may begin with the byte-order mark that Excel writes", "[inflow]") {
+    const FreshFolder folder;
+    std::ofstream(folder.path() / "q.csv") << "\xEF\xBB\xBFt [s],discharge [m3/s]\r\n0,1\r\n60,3\r\n";
+    CHECK(read_hydrograph(folder.path() / "q.csv").discharge == std::vector<double>{1, 3});
+    CHECK_THROWS_AS(read_hydrograph(folder.path() / "none.csv"), UserError);
+    CHECK_THROWS_AS(read_hydrograph(folder.path()), UserError);
 }
 
 TEST_CASE("What is wrong with a table is said in a sentence", "[inflow]") {

@@ -432,9 +432,32 @@ TEST_CASE("Each polygon of an outline has the depth of its attribute", "[scene]"
         REQUIRE(problems.size() == 1);
         return problems[0];
     };
+    CHECK(refusal("outline = \"scars.gpkg\"\ndepth = \"field:h\"").find("no such attribute") != std::string::npos);
     gis.attributes["thickness_m"][1] = 0.0;
     CHECK(refusal(keys).find("release.0.depth: found a depth of 0 m in ") != std::string::npos);
     CHECK(refusal("depth = \"field:thickness_m\"").find("an attribute without an outline") != std::string::npos);
+}
+
+TEST_CASE("Polygons of other depths that overlap add up, which is remarked upon", "[scene]") {
+    FakeGis gis = slope_gis();
+    Polygons& scars = gis.polygons["scars.gpkg"];
+    scars = rectangle(1050, 2050, 1070, 2080);
+    scars.parts.push_back(rectangle(1060, 2050, 1080, 2080).parts[0]);
+    const auto remarks = [&](std::vector<double> depths) {
+        gis.attributes["h"] = std::move(depths);
+        std::string said;
+        for (const std::string& line :
+             built(with_release("outline = \"scars.gpkg\"\ndepth = \"field:h\""), gis).scene.log)
+            if (line.find("overlap") != std::string::npos) said += line + "\n";
+        return said;
+    };
+    const std::string said = remarks({3.0, 1.5});
+    CAPTURE(said);
+    CHECK(said.find("release.0.depth: polygons of rectangle overlap on about 300 m2; their depths add up there, to "
+                    "about 450 m3 more than by the deepest of them") != std::string::npos);
+    CHECK(remarks({2.0, 2.0}).find("which is counted once") != std::string::npos);
+    scars.parts[1] = rectangle(1070, 2050, 1080, 2080).parts[0];
+    CHECK(remarks({3.0, 1.5}).empty());
 }
 
 TEST_CASE("A thickness normal to the slope needs no elevations far from its outline", "[scene]") {

@@ -27,6 +27,7 @@ FakeGis surveyed_gis() {
     gis.polygons["footprint.geojson"] = rectangle(1020, 2040, 1100, 2090);
     gis.rasters["dod.tif"] = sampled({8, 6, 1002.5, 2002.5, 5.0}, [](double, double) { return -0.3; });
     gis.rasters["away.tif"] = sampled({8, 6, 9002.5, 2002.5, 5.0}, [](double, double) { return -0.3; });
+    gis.lines["far.geojson"] = {{{9000, 2050}, {9100, 2050}}};
     return gis;
 }
 
@@ -60,6 +61,9 @@ TEST_CASE("A change of the bed that cannot be compared is refused before the run
     CHECK(has(problem_of(loose + footprint + "bed_change = \"gone.tif\"\n"), "gone.tif: no such raster"));
     CHECK(has(problem_of(footprint + "deposit = \"gone.tif\"\n"), "gone.tif: no such raster"));
     CHECK(has(problem_of(footprint + "path = \"none.geojson\"\n"), "none.geojson: holds 0 lines; expected one"));
+    CHECK(has(problem_of(footprint + "path = \"far.geojson\"\n"),
+              "survey.path: slide/far.geojson: found no point of its line on the terrain; expected the path within x "
+              "1000 to 1200, y 2000 to 2150; check its coordinates and its CRS"));
     CHECK(has(problem_of(loose + footprint + "bed_change_noise = -1\n"), "survey.bed_change_noise"));
 }
 

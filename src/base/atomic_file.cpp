@@ -52,12 +52,13 @@ void cut_back(const std::filesystem::path& file, std::uintmax_t bytes) {
     std::error_code failure;
     const std::uintmax_t found = std::filesystem::file_size(file, failure);
     if (failure)
-        throw UserError(fmt::format("{}: cannot be continued: {}; put it back, or run without --resume", file.string(),
-                                    failure.message()));
+        throw UserError(
+            fmt::format("{}: cannot be continued: {}; put it back, or run with --overwrite instead of --resume",
+                        file.string(), failure.message()));
     if (found < bytes)
         throw UserError(
             fmt::format("{}: found {} bytes; expected at least the {} that it had when the state was kept; "
-                        "put it back, or run without --resume",
+                        "put it back, or run with --overwrite instead of --resume",
                         file.string(), found, bytes));
     std::filesystem::resize_file(file, bytes, failure);
     if (failure)

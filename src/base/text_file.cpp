@@ -21,6 +21,16 @@ void TextFile::flush() {
     buffer_.clear();
 }
 
+std::optional<std::string> text_in_file(const std::filesystem::path& file) {
+    const std::string mark = "\xEF\xBB\xBF";
+    std::error_code not_there;
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream || std::filesystem::is_directory(file, not_there)) return {};
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    if (text.compare(0, mark.size(), mark) == 0) text.erase(0, mark.size());
+    return text;
+}
+
 std::string json_text(const std::string& text) {
     std::string quoted = "\"";
     for (const char c : text) {

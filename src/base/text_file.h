@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -31,6 +32,9 @@ private:
     std::ofstream stream_;
     fmt::memory_buffer buffer_;
 };
+
+/// The text of a file, without the byte-order mark that Excel puts before it. Nothing where no file can be read.
+std::optional<std::string> text_in_file(const std::filesystem::path& file);
 
 /// A text between quotes as JSON has it.
 std::string json_text(const std::string& text);

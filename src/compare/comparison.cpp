@@ -51,6 +51,11 @@ private:
         if (survey_.path) {
             result_.path = *survey_.path;
             const double rise = height_at(result_.path.back()) - height_at(result_.path.front());
+            if (run_.bed && std::isnan(rise))
+                remark(
+                    "{}: found an end of the path where the terrain has no elevation, so which way it falls is not "
+                    "checked; expected it drawn downhill, from the release to the toe",
+                    survey_.path_source);
             if (rise > 0.0) {
                 std::reverse(result_.path.begin(), result_.path.end());
                 remark("{}: the path is drawn uphill and was turned round", survey_.path_source);

@@ -2,19 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
+#include <optional>
 
 #include "base/error.h"
+#include "base/text_file.h"
 
 namespace frana {
 
 std::string text_of_file(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream || std::filesystem::is_directory(file))
+    std::optional<std::string> text = text_in_file(file);
+    if (!text)
         throw UserError(
             fmt::format("{}: found no file that can be read; expected one; correct the name", file.string()));
-    return {std::istreambuf_iterator<char>(stream), {}};
+    return *std::move(text);
 }
 
 void read_toml(const std::string& text, const std::filesystem::path& file, Problems& problems,

@@ -80,7 +80,7 @@ protected:
         if (count > fs::file_size(access_.file()) / H5Tget_size(type))  // arrays are not packed
             throw UserError(
                 fmt::format("{}: claims {} values of {}, more than a file of its size holds; it is damaged, "
-                            "run without --resume",
+                            "run with --overwrite instead of --resume",
                             access_.file().string(), count, name));
         return count;
     }
@@ -113,7 +113,7 @@ private:
     UserError stranger(const std::string& name) const {
         return UserError(
             fmt::format("{}: has no {} as this program keeps it; it was left by another build of this "
-                        "version, resume with that one or run without --resume",
+                        "version, resume with that one or run with --overwrite instead of --resume",
                         access_.file().string(), name));
     }
     const Access& access_;
@@ -148,10 +148,10 @@ void write_head(const fs::path& file) {
 /// The file is a checkpoint, as long as it was and with the bytes that it had.
 void require_whole(const fs::path& file) {
     const auto damaged = [&](const std::string& what) {
-        return UserError(
-            fmt::format("{}: {}; expected the state that a run keeps there; run without --resume to start "
-                        "at the beginning",
-                        file.string(), what));
+        return UserError(fmt::format(
+            "{}: {}; expected the state that a run keeps there; run with --overwrite instead of --resume to start "
+            "at the beginning",
+            file.string(), what));
     };
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw damaged(fs::exists(file) ? "cannot be read" : "not found");

@@ -50,26 +50,49 @@ struct Unit {
     std::string name;
 };
 
-/// The unit of elevations when it is not the metre. The vertical part of the CRS declares it, else the band.
-Unit vertical_unit(const Place& place) {
-    if (!place.elevation) return {};
-    if (place.crs && place.crs->IsCompound()) {
-        const char* name = nullptr;
-        const double metres = place.crs->GetTargetLinearUnits("VERT_CS", &name);
-        return std::abs(metres - 1.0) > unit_tolerance ? Unit{metres, name ? name : "unknown"} : Unit{};
-    }
+/// The unit that a band declares. Nothing where its name is that of no length.
+std::optional<Unit> band_unit(const Place& place) {
     std::string unit = place.band_unit;
     std::transform(unit.begin(), unit.end(), unit.begin(), [](unsigned char c) { return std::tolower(c); });
-    static const std::map<std::string, double> known = {
-        {"ft", 0.3048},       {"foot", 0.3048},           {"feet", 0.3048},  {"cm", 0.01},
-        {"centimetre", 0.01}, {"centimeter", 0.01},       {"dm", 0.1},       {"mm", 0.001},
-        {"km", 1000.0},       {"us-ft", us_foot},         {"ftus", us_foot}, {"us survey foot", us_foot},
-        {"foot_us", us_foot}, {"us_survey_foot", us_foot}};
+    static const std::map<std::string, double> known = {{"m", 1.0},
+                                                        {"metre", 1.0},
+                                                        {"meter", 1.0},
+                                                        {"ft", 0.3048},
+                                                        {"foot", 0.3048},
+                                                        {"feet", 0.3048},
+                                                        {"cm", 0.01},
+                                                        {"centimetre", 0.01},
+                                                        {"centimeter", 0.01},
+                                                        {"dm", 0.1},
+                                                        {"mm", 0.001},
+                                                        {"km", 1000.0},
+                                                        {"us-ft", us_foot},
+                                                        {"ftus", us_foot},
+                                                        {"us survey foot", us_foot},
+                                                        {"foot_us", us_foot},
+                                                        {"us_survey_foot", us_foot}};
     const auto found = known.find(unit);
-    return found == known.end() ? Unit{} : Unit{found->second, place.band_unit};
+    if (found == known.end()) return {};
+    return Unit{found->second, place.band_unit};
 }
 
-/// Turns elevations into metres. The detour over a VRT drops the old unit, which gdal_translate alone would
+/// The unit of the vertical part of the CRS. Nothing where it has none.
+std::optional<Unit> crs_unit(const Place& place) {
+    if (!place.crs || !place.crs->IsCompound()) return {};
+    const char* name = nullptr;
+    const double metres = place.crs->GetTargetLinearUnits("VERT_CS", &name);
+    return Unit{metres, name ? name : "unknown"};
+}
+
+bool is_metre(const std::optional<Unit>& unit) { return !unit || std::abs(unit->metres - 1.0) <= unit_tolerance; }
+
+/// The declared unit of elevations. The vertical part of the CRS declares it, else the band.
+std::optional<Unit> vertical_unit(const Place& place) {
+    const std::optional<Unit> unit = crs_unit(place);
+    return unit ? unit : band_unit(place);
+}
+
+/// Turns values into metres. The detour over a VRT drops the old unit, which gdal_translate alone would
 /// carry on, and the vertical CRS.
 std::string scale_line(const Place& place, const Unit& unit) {
     std::string crs;
@@ -92,15 +115,19 @@ std::string scale_line(const Place& place, const Unit& unit) {
         crs, shell(between), shell(place.file.string()), unit.metres, shell(between), shell(target));
 }
 
+[[noreturn]] void refuse_unit(const Place& place, const char* what, const Unit& unit) {
+    throw UserError(fmt::format("{}: its {} are declared in {}; expected metres; run: {}", place.file.string(), what,
+                                unit.name, scale_line(place, unit)));
+}
+
 [[noreturn]] void refuse_plane(const Place& place, const std::string& found) {
-    const Unit up = vertical_unit(place);
-    const bool metres = up.name.empty();
+    const std::optional<Unit> up = vertical_unit(place);
+    const bool metres = is_metre(up);
     const std::filesystem::path input = metres ? place.file : std::filesystem::path(sibling(place.file, "_metres"));
-    throw UserError(fmt::format("{}: {}{}; expected a projected CRS in metres; run: {}{}{}", place.file.string(), found,
-                                metres ? "" : ", and its elevations are in " + up.name,
-                                metres ? "" : scale_line(place, up) + " && ",
-                                warp_line(input, metric_crs(place), "_utm"),
-                                metres && place.elevation ? " (its elevations are taken as metres)" : ""));
+    throw UserError(fmt::format(
+        "{}: {}{}; expected a projected CRS in metres; run: {}{}{}", place.file.string(), found,
+        metres ? "" : ", and its elevations are in " + up->name, metres ? "" : scale_line(place, *up) + " && ",
+        warp_line(input, metric_crs(place), "_utm"), metres ? " (its elevations are taken as metres)" : ""));
 }
 
 /// A map whose lengths are not those on the ground, such as Web Mercator's.
@@ -208,9 +235,13 @@ void require_metres(const Place& place, std::vector<std::string>& log) {
                                             unit ? unit : "not the metre"));
         require_true_lengths(place);
     }
-    if (const Unit up = vertical_unit(place); !up.name.empty())
-        throw UserError(fmt::format("{}: its elevations are declared in {}; expected metres; run: {}",
-                                    place.file.string(), up.name, scale_line(place, up)));
+    if (const auto up = vertical_unit(place); !is_metre(up)) refuse_unit(place, "elevations", *up);
+}
+
+void require_metre_values(const Place& place) {
+    const std::optional<Unit> unit = band_unit(place);
+    if (const auto declared = unit ? unit : crs_unit(place); !is_metre(declared))
+        refuse_unit(place, "values", *declared);
 }
 
 std::string warp_line(const std::filesystem::path& file, const std::string& target_crs, const std::string& suffix) {

@@ -37,13 +37,16 @@ struct Place {
     const OGRSpatialReference* crs = nullptr;  ///< null: unknown
     std::array<double, 2> centre{};            ///< of what is used, in the CRS
     std::string band_unit;                     ///< unit of the elevations that the band declares, or empty
-    bool elevation = true;                     ///< false: a depth, a mask; its vertical unit is not checked
 };
 
 /// Checks that map coordinates (and elevations) are metres. UserError with a gdalwarp or gdal_translate line
 /// that cures it. Causes are a geographic CRS, another unit than metre, and a vertical unit other than metre. So are
 /// lengths on the map that are not those on the ground. Remarks go to `log`.
 void require_metres(const Place& place, std::vector<std::string>& log);
+
+/// Checks that numbers of a raster on a terrain, such as depths, are metres. The band's unit counts before that of the
+/// CRS's heights. UserError with a line that cures it.
+void require_metre_values(const Place& place);
 
 /// Arguments after the program's name of a gdalwarp that leaves no pixel that only seems to be terrain.
 std::string warp_line(const std::filesystem::path& file, const std::string& target_crs, const std::string& suffix);

@@ -140,6 +140,12 @@ void note_gaps(const RasterFile& raster, const GridGeometry& grid, std::vector<s
 
 }  // namespace
 
+void GdalReader::require_metres(const std::filesystem::path& file) const {
+    std::vector<std::string> said_when_it_is_read;
+    const RasterFile raster(file, gdal::Meaning::any, said_when_it_is_read);
+    gdal::require_metre_values({file, &raster.crs(), {}, raster.unit()});
+}
+
 RasterPlace GdalReader::place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
                                  const std::string& crs_wkt) const {
     std::vector<std::string> said_when_it_is_read;

@@ -22,6 +22,9 @@ public:
 
     std::shared_ptr<const GisReader> lasting() const override { return std::make_shared<GdalReader>(); }
 
+    /// The unit is that of the band or, where that names no length, of the CRS's heights.
+    void require_metres(const std::filesystem::path& file) const override;
+
     RasterPlace place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
                          const std::string& crs_wkt) const override;
 
@@ -57,7 +60,7 @@ public:
                          const std::string& crs_wkt, std::vector<std::string>& log) const override;
 
     /// Thickness of a surveyed deposit, or a surveyed change of the bed, on the pixels of `grid`. That is widened by
-    /// whole pixels to all of the raster, so that no volume is lost. UserError as read_onto and read_survey.
+    /// whole pixels to all of the raster, so that no volume is lost. UserError as read_onto, read_survey and require_metres.
     Raster read_deposit(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
                         std::vector<std::string>& log) const override;
 

@@ -212,6 +212,8 @@ void write_class_geotiff(const std::filesystem::path& target, const GridGeometry
     write_text(names, class_names_xml(classes));
 }
 
+bool footprint_names_crs(const std::string& crs_wkt) { return !coded_crs(crs_wkt).IsEmpty(); }
+
 void write_footprint(const std::filesystem::path& target, const Raster& covered_depth, double threshold,
                      const std::map<std::string, double>& attributes) {
     std::map<std::string, double> fields = attributes;

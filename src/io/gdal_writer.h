@@ -43,4 +43,7 @@ void write_class_geotiff(const std::filesystem::path& target, const GridGeometry
 void write_footprint(const std::filesystem::path& target, const Raster& covered_depth, double threshold,
                      const std::map<std::string, double>& attributes = {});
 
+/// Whether that member can name the CRS. Without it a GIS takes the coordinates for degrees.
+bool footprint_names_crs(const std::string& crs_wkt);
+
 }  // namespace frana

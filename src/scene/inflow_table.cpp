@@ -6,11 +6,12 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <fstream>
+#include <optional>
 #include <sstream>
 
 #include "base/error.h"
 #include "base/number_text.h"
+#include "base/text_file.h"
 
 namespace frana {
 namespace {
@@ -242,11 +243,9 @@ Hydrograph parse_hydrograph(const std::string& text, const std::string& source) 
 }
 
 Hydrograph read_hydrograph(const std::filesystem::path& file) {
-    std::ifstream stream(file);
-    std::stringstream text;
-    text << stream.rdbuf();
-    if (!stream) throw UserError(file.string() + ": found no file that can be read; expected a table; check its name");
-    return parse_hydrograph(text.str(), file.string());
+    const std::optional<std::string> text = text_in_file(file);
+    if (!text) throw UserError(file.string() + ": found no file that can be read; expected a table; check its name");
+    return parse_hydrograph(*text, file.string());
 }
 
 const std::vector<std::string>& peak_formulas() {

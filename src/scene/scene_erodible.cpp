@@ -31,6 +31,7 @@ Raster depth_of(const CaseFile& file, const GisReader& reader, Scene& scene) {
     const GridGeometry& grid = scene.bed.geometry;
     if (!file.is_text("erodible.depth")) return Raster::filled(grid, file.number("erodible.depth"));
     const std::filesystem::path path = file.path("erodible.depth");
+    reader.require_metres(path);
     std::vector<std::string> before = scene.log;  // what the first reading says the second says again
     refuse_negative(pixels_on(path, reader, scene), path.string());
     scene.log = std::move(before);

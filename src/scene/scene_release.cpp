@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/layer_name.h"
+#include "scene/nodes_of_place.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
@@ -32,7 +33,9 @@ public:
         release.name = case_.table_place(table_);
         bool good = true;
         if (given("outline")) good &= problems.attempt(place("outline"), [&] { release.outline = outline(); });
-        if (good && !depths_.empty()) return by_depth(release, problems);
+        if (!depth_attribute().empty()) {  // depths come with the outline
+            return good ? by_depth(release, problems) : std::vector<Release>();
+        }
         const char* depth_key = given("mask") ? "mask" : given("surface") ? "surface" : "depth";
         good &= problems.attempt(place(depth_key), [&] { set_depth(release); });
         good &= problems.attempt(place("velocity"), [&] { set_velocity(release); });
@@ -51,6 +54,7 @@ private:
             same.crs_wkt = all.outline->crs_wkt, same.source = all.outline->source;
             same.parts.push_back(all.outline->parts[n]);
         }
+        remark_on_overlap(parts);
         std::vector<Release> releases;
         const bool good = problems.attempt(place("depth"), [&] {
             if (!(parts.begin()->first > 0.0))
@@ -66,6 +70,43 @@ private:
             }
         });
         return good ? releases : std::vector<Release>();
+    }
+
+    /// Polygons of one depth count once where they overlap. Those of other depths add up, which is rarely meant.
+    void remark_on_overlap(const std::map<double, Polygons>& parts) const {
+        if (parts.size() < 2) return;
+        const GridGeometry points = points_over(parts);
+        NodeMarks covered(static_cast<std::size_t>(points.size()), 0);
+        double twice = 0.0, more = 0.0;                                   // [m2], [m3]
+        for (auto part = parts.rbegin(); part != parts.rend(); ++part) {  // the deepest first
+            NodeMarks marks(covered.size(), 0);
+            for (const Polygon& polygon : part->second.parts) mark_inside(polygon, points, marks);
+            double again = 0.0;
+            for (std::size_t k = 0; k < marks.size(); ++k) {
+                again += marks[k] && covered[k] ? points.cell * points.cell : 0.0;
+                covered[k] |= marks[k];
+            }
+            twice += again, more += again * part->first;
+        }
+        if (!(twice > 0.0)) return;
+        log_.push_back(fmt::format(
+            "{}: polygons of {} overlap on about {:.3g} m2; their depths add up there, to about {:.3g} m3 more than by "
+            "the deepest of them; if that is not meant, cut them so that none overlaps another",
+            place("depth"), parts.begin()->second.source, twice, more));
+    }
+
+    /// Points all over the outline, some to a cell.
+    GridGeometry points_over(const std::map<double, Polygons>& parts) const {
+        constexpr double kPerCell = 4.0, kMost = 2000.0;  // along a side
+        Vec2 low(INFINITY, INFINITY), high(-INFINITY, -INFINITY);
+        for (const auto& part : parts)
+            for (const Polygon& polygon : part.second.parts)
+                for (const auto& ring : polygon.rings)
+                    for (const Vec2& corner : ring) low = low.cwiseMin(corner), high = high.cwiseMax(corner);
+        const Vec2 size = high - low;
+        const double step = std::max(bed_.geometry.cell / kPerCell, size.maxCoeff() / kMost);
+        const auto count = [&](double length) { return static_cast<Index>(std::ceil(length / step)); };
+        return {count(size.x()), count(size.y()), low.x() + 0.5 * step, low.y() + 0.5 * step, step};
     }
 
     /// Of "field:thickness_m"; empty for other depths.
@@ -145,6 +186,7 @@ private:
             for (std::size_t k = 0; k < mask.values.size(); ++k)
                 if (!(mask.values[k] > 0.0)) release.depth_field->values[k] = Raster::nodata;
         } else if (!depth_of_features_ && is_file("depth")) {
+            reader_.require_metres(case_.path(key("depth")));
             release.depth_field = raster(case_.path(key("depth")));
             remark_on_gaps(*release.depth_field, claimed(release, release.depth_field->geometry), place("depth"), log_);
             *release.depth_field = finer_field(*release.depth_field, bed_.geometry.cell);
@@ -161,6 +203,7 @@ private:
     Raster depth_on(const GridGeometry& grid, bool claimed, const NodeMarks& places) const {
         const char* name = given("surface") ? "surface" : "depth";
         const bool file = !depth_of_features_ && is_file(name);
+        if (file) reader_.require_metres(case_.path(key(name)));
         Raster field = file ? reader_.read_onto(case_.path(key(name)), grid, bed_.crs_wkt, log_)
                             : Raster::filled(grid, depth_number(name));
         if (field.source.empty()) field.source = key(name);

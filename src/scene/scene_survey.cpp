@@ -30,7 +30,7 @@ void read_survey(const CaseFile& file, const GisReader& reader, Scene& scene, Pr
     attempt("survey.footprint", files.footprint,
             [&] { scene.survey = reader.read_survey(files.footprint, terrain.pixel_extent(), crs, scene.log); });
     attempt("survey.path", files.path,
-            [&] { read_survey_path(reader, files.path, crs, said_again_by_the_comparison); });
+            [&] { read_survey_path(reader, files.path, terrain.pixel_extent(), crs, said_again_by_the_comparison); });
     attempt("survey.deposit", files.deposit,
             [&] { reader.read_deposit(files.deposit, grid, crs, said_again_by_the_comparison); });
     attempt("survey.bed_change", files.bed_change, [&] {

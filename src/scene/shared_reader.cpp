@@ -85,6 +85,11 @@ std::shared_ptr<const GisReader> SharedReader::lasting() const {
     return inner_.lasting();
 }
 
+void SharedReader::require_metres(const std::filesystem::path& file) const {
+    const std::lock_guard<std::recursive_mutex> alone(*mutex_);
+    inner_.require_metres(file);
+}
+
 RasterPlace SharedReader::place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
                                    const std::string& crs_wkt) const {
     const std::lock_guard<std::recursive_mutex> alone(*mutex_);

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "scene/case_file.h"
+#include "scene/scene_parts.h"
 
 namespace frana {
 namespace {
@@ -55,7 +55,8 @@ SurveyFiles survey_files(const CaseFile& file) {
     return files;
 }
 
-Polyline read_survey_path(const GisReader& reader, const std::filesystem::path& file, const std::string& crs_wkt,
+Polyline read_survey_path(const GisReader& reader, const std::filesystem::path& file,
+                          const std::array<double, 4>& extent, const std::string& crs_wkt,
                           std::vector<std::string>& log) {
     const std::vector<Polyline> lines = reader.read_lines(file, crs_wkt, log);
     if (lines.size() != 1)
@@ -70,6 +71,11 @@ Polyline read_survey_path(const GisReader& reader, const std::filesystem::path& 
             fmt::format("{}: its line has no length; expected the path from the release to the toe; draw "
                         "it again",
                         file.string()));
+    if (!comes_onto(lines.front(), extent))
+        throw UserError(
+            fmt::format("{}: found no point of its line on the terrain; expected the path within x {:.10g} to {:.10g}, "
+                        "y {:.10g} to {:.10g}; check its coordinates and its CRS",
+                        file.string(), extent[0], extent[2], extent[1], extent[3]));
     return lines.front();
 }
 

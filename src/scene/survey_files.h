@@ -1,5 +1,6 @@
 #pragma once
 // The files of a survey, named by a case or on a command line. Those that need care are read here.
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -19,8 +20,10 @@ struct SurveyFiles {
 /// [survey] of a case.
 SurveyFiles survey_files(const CaseFile& file);
 
-/// The one line of a vector file. UserError unless it holds one, with a length.
-Polyline read_survey_path(const GisReader& reader, const std::filesystem::path& file, const std::string& crs_wkt,
+/// The one line of a vector file. UserError unless it holds one, with a length and a part within `extent` of the terrain
+/// (xmin, ymin, xmax, ymax).
+Polyline read_survey_path(const GisReader& reader, const std::filesystem::path& file,
+                          const std::array<double, 4>& extent, const std::string& crs_wkt,
                           std::vector<std::string>& log);
 
 /// Difference of two surveys [m] on the pixels of `grid`. It is widened to all of the raster, as for a deposit. NaN:

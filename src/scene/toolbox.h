@@ -51,6 +51,8 @@ public:
     }
     /// A reader of the same files that may outlive this one, for several threads at once. Nothing: parts cannot be read here.
     virtual std::shared_ptr<const GisReader> lasting() const { return {}; }
+    /// UserError for a raster that declares its numbers in another unit of length than the metre.
+    virtual void require_metres(const std::filesystem::path& /*file*/) const {}
     /// How a raster lies to `extent` of a map of that CRS.
     virtual RasterPlace place_of(const std::filesystem::path& /*file*/, const std::array<double, 4>& /*extent*/,
                                  const std::string& /*crs_wkt*/) const {

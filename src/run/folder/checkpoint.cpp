@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kNotGiven = "not given";
-constexpr const char* kWayOut = "or run without --resume to start at the beginning";
+constexpr const char* kWayOut = "or run with --overwrite instead of --resume to start at the beginning";
 
 /// Whether two cases that differ in this key alone have the same states.
 bool changes_nothing(const std::string& key) { return key == "output.checkpoint_minutes"; }

@@ -196,7 +196,7 @@ Survey read_survey_files(const SurveyFiles& files, const Raster& like, std::vect
     if (!files.footprint.empty())
         survey.footprint = reader.read_survey(files.footprint, like.geometry.pixel_extent(), like.crs_wkt, log);
     if (!files.path.empty()) {
-        survey.path = read_survey_path(reader, files.path, like.crs_wkt, log);
+        survey.path = read_survey_path(reader, files.path, like.geometry.pixel_extent(), like.crs_wkt, log);
         survey.path_source = files.path.string();
     }
     if (!files.deposit.empty()) {

@@ -13,6 +13,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "compare/flow_width.h"
+#include "io/gdal_writer.h"
 #include "io/netcdf_series.h"
 #include "io/xdmf_writer.h"
 #include "observe/gauges.h"
@@ -94,6 +95,16 @@ void note_results(RunRecord& record, const std::vector<ProductRaster>& rasters) 
 void note_taken(RunRecord& record, const Scene& scene, const std::vector<ProductRaster>& rasters) {
     if (const ProductRaster* eroded = find_product(rasters, "eroded_depth"))
         record.taken_of_bed = taken_of_bed(scene, eroded->raster.geometry, eroded->raster.values);
+}
+
+/// footprint.geojson of a CRS without a code looks like degrees.
+void remark_on_unnamed_crs(const Raster& covered, bool has_layers, RunRecord& record) {
+    if (covered.crs_wkt.empty() || footprint_names_crs(covered.crs_wkt)) return;
+    record.warnings.push_back(fmt::format(
+        "footprint.geojson: found a CRS without an EPSG code, which GeoJSON cannot name, so that a GIS takes "
+        "its coordinates for degrees; expected those of the elevation model's CRS; {}give the layer that CRS "
+        "in the GIS",
+        has_layers ? "open results.gpkg, which names it, or " : ""));
 }
 
 /// compare.json, when the case gives a survey. The run is worth more than its scores: trouble is a warning.
@@ -332,8 +343,10 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
 
     timed(record.summary, "rasters", [&] {
         if (scene.output.geotiff) write_rasters(run_dir, rasters, record.title);
-        if (const std::optional<Raster> covered = ever_covered(rasters))
+        if (const std::optional<Raster> covered = ever_covered(rasters)) {
             write_outline(run_dir, *covered, scene.output.footprint_depth);
+            remark_on_unnamed_crs(*covered, scene.output.geotiff, record);
+        }
         leave_barrier_table(scene, run_dir, rasters, record);
         leave_gis_files(scene, run_dir, rasters, record);
     });
