@@ -77,14 +77,15 @@ TEST_CASE("All releases may enter later, and their features' depths are one rele
 
 TEST_CASE("A flow begins with what lies there at the start, else with what comes first", "[scene][late][inflow]") {
     const auto start = [](const std::string& text) { return flow_start(built(text)).value(); };
-    const auto in_first = [](const Vec2& at) { return at.y() < 2050.0; };
+    const auto in_first = [](const Vec2& at) { return at.x() > 1045.0; };  // the second ends at 1040
     CHECK(in_first(start(kFirst)));
     // Late releases pull no middle to themselves, whether they enter or not.
     CHECK(start(kFirst + kSecond + "at = 7.5\n") == start(kFirst));
     CHECK(start(kFirst + kSecond + "when_hit = true\n") == start(kFirst));
     CHECK_FALSE(in_first(start(kFirst + "at = 7.5\n" + kSecond + "at = 3\n")));
     CHECK(in_first(start(kFirst + "at = 2.5\n" + kSecond + "at = 3\n")));
-    const std::string inflow = "[[inflow]]\nline = [[1150, 2090], [1150, 2110]]\nvolume = 500\nduration = 20\n";
+    const std::string inflow =
+        "[[inflow]]\nname = \"torrent\"\nline = [[1150, 2060], [1150, 2080]]\nvolume = 500\nvelocity = 3\n";
     CHECK(start(inflow + kFirst + "at = 5\n").x() == Approx(1150.0));
     CHECK(start(inflow + kFirst + "when_hit = true\n").x() == Approx(1150.0));
 }
