@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "analytic_scene.h"
+#include "barrier_ground.h"
 #include "base/error.h"
 #include "catch.h"
 #include "checks/verify/body.h"

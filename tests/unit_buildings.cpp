@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "analytic_scene.h"
+#include "barrier_ground.h"
 #include "catch.h"
 #include "coupling/walled_columns.h"
 #include "observe/memory_archive.h"

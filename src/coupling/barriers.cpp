@@ -193,13 +193,6 @@ std::vector<BarrierNode> barrier_nodes(const Scene& scene) {
     return nodes;
 }
 
-Raster with_barriers(const Scene& scene) {
-    Raster bed = scene.bed;
-    for (const BarrierNode& node : barrier_nodes(scene))
-        if (double& z = bed.at(node.i, node.j); node.top > z) z = node.top;
-    return bed;
-}
-
 namespace {
 
 /// Calls f(i, j) for a node and its eight neighbours: the slopes of those have its top in them.

@@ -18,9 +18,6 @@ namespace frana {
 /// are separate. Throws UserError for an outline without area or a line that turns too sharply.
 Prism solid_of(const Barrier& barrier, const Raster& bed, double cell);
 
-/// The bed for columns. Where a node lies in a barrier, or within half a cell of it, the bed rises to its top.
-Raster with_barriers(const Scene& scene);
-
 /// A node within a barrier, or within half a cell of it.
 struct BarrierNode {
     Index i, j;

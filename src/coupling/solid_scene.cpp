@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "coupling/barriers.h"
 #include "coupling/bed_friction.h"
+#include "scene/stage_reach.h"
 
 namespace frana {
 namespace {
@@ -96,10 +97,7 @@ std::vector<std::uint8_t> nodes_in_window(const Scene& scene) {
 }
 
 std::vector<std::uint8_t> nodes_at_edge(const Scene& scene) {
-    // Points come out by a cell of the terrain. They and columns reach 3/2 cells of the 3D grid each. Columns are half
-    // a cell of the terrain wide each way.
-    const double cell = scene.bed.geometry.cell;
-    const auto more = static_cast<Index>(std::ceil((1.5 * cell + 3.0 * scene.solid->cell) / cell));
+    const Index more = reach_around(*scene.solid, scene.bed.geometry.cell);
     std::array<Index, 4> box = scene.solid->window;
     for (std::size_t side = 0; side < 4; ++side)
         if (!scene.solid->closed[side]) box[side] += side < 2 ? -more : more;

@@ -9,6 +9,7 @@
 #include "law/catalogue.h"
 #include "particles/outline_area.h"
 #include "scene/nodes_of_place.h"
+#include "scene/stage_reach.h"
 #include "terrain/part_of.h"
 
 namespace frana {
@@ -103,7 +104,7 @@ void keep_inside(const CaseFile& file, const GisReader& reader, Scene& scene, Ra
 /// 3D points take up no bed: it is firm in their window, and around it as far as they and columns act on each other.
 void leave_window_out(const SolidStage& stage, Raster& depth, Scene& scene) {
     const GridGeometry& g = depth.geometry;
-    const auto reach = 2 + static_cast<Index>(std::ceil(1.5 + 3.0 * stage.cell / g.cell));
+    const Index reach = 2 + reach_around(stage, g.cell);  // whose ground points may stand on
     const std::array<Index, 4>& w = stage.window;
     const NodeBox firm = common(widened({w[0], w[1], w[2] - w[0] + 1, w[3] - w[1] + 1}, reach), NodeBox::all(g));
     double volume = 0.0;

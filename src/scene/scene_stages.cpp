@@ -239,10 +239,13 @@ private:
                 "give stage.viscosity and stage.yield_stress, or remove what makes material.rheology differ");
         if (law == "of_bed") {
             stage.of_bed = true;
-            refuse_others("drucker_prager by the bed's friction", {"sound_speed", "viscosity"});
+            refuse_others("drucker_prager by the bed's friction", [](const auto& key) { return key == "sound_speed"; });
             return solid::DruckerPrager::of({}, std::atan(friction_at_rest(scene_.bed_law)), 0.0);
         }
-        refuse_keys_of_others(law);
+        refuse_others(law, [&](const std::string& key) {
+            const std::vector<std::string> laws = solid::words_with(key);
+            return std::find(laws.begin(), laws.end(), law) != laws.end();
+        });
         if (law == "drucker_prager" || law == "elastic") {
             const solid::Elastic elastic = solid::Elastic::of(number("young_modulus"), number("poisson_ratio"));
             if (law == "elastic") return elastic;
@@ -281,18 +284,11 @@ private:
                                         plane ? solid::Cone::plane_strain : solid::Cone::compression);
     }
 
-    /// Keys that only other laws have.
-    void refuse_keys_of_others(const std::string& law) {
-        std::vector<std::string> own;
-        for (const std::string& key : solid::all_keys()) {
-            const std::vector<std::string> laws = solid::words_with(key);
-            if (std::find(laws.begin(), laws.end(), law) != laws.end()) own.push_back(key);
-        }
-        refuse_others(law, own);
-    }
-    void refuse_others(const std::string& law, const std::vector<std::string>& own) {
+    /// Keys of laws that this one does not take.
+    template <class Takes>
+    void refuse_others(const std::string& law, const Takes& takes) {
         for (const std::string& key : solid::all_keys())
-            if (given(key.c_str()) && std::find(own.begin(), own.end(), key) == own.end()) unused(key.c_str(), law);
+            if (given(key.c_str()) && !takes(key)) unused(key.c_str(), law);
     }
 
     void unused(const char* name, const std::string& law) {

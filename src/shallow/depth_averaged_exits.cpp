@@ -93,9 +93,8 @@ double DepthAveraged::take_in(const Seeds& seeds, const std::vector<Mat2>& gradi
         }
     });
     splitter_.set_next_id(splitter_.next_id() + seeds.count());
-    FlowLedger back = carried_in(came);  // it had left
-    std::swap(back.mass_in, back.mass_left);
-    back.mass_left = -back.mass_left;
+    FlowLedger back = carried_in(came);
+    back.mass_in = 0.0, back.mass_left = -came.left_mass;  // it had left
     account(back);
     status_.kinetic += kinetic;  // of nodes, and to the next grid update only
     signal_ = std::max(signal_, status_.max_speed_on_map);

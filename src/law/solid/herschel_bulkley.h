@@ -20,13 +20,11 @@ struct HerschelBulkley {
 
     template <class Real>
     [[gnu::always_inline]] SymOf<Real> stress(Real j, const Given<Real>* state, const Square<Real>&) const {
-        return SymOf<Real>::read(state).plus_isotropic(-bulk * max(1.0 - j, Real{})) * j;
+        return stress_in(j, state, bulk);
     }
     template <class Real>
     [[gnu::always_inline]] void update(const DeformationOf<Real>& d, Real& j, Given<Real>* state) const {
-        j = min(j * (1.0 + d.dt * trace<Real>(d.gradient)), Real{} + 1.0);
-        const SymOf<Real> trial = spun<Real>(SymOf<Real>::read(state), d) +
-                                  SymOf<Real>::of(d.gradient).deviator() * (Real{} + 2.0 * shear * d.dt);
+        const SymOf<Real> trial = elastic_trial<Real>(d, j, state, shear);
         const Real size = trial.norm() * std::sqrt(0.5), over = max(size - yield_stress, Real{});
         if (!any(over > 0.0)) return trial.deviator().write(state);
         const Real left = (yield_stress + left_of(over, d.dt)) / select(size > 0.0, size, Real{} + 1.0);
@@ -42,7 +40,7 @@ struct HerschelBulkley {
     [[gnu::always_inline]] Real stored(Real j, const Given<Real>* state) const {
         return stored_in(j, SymOf<Real>::read(state), bulk, shear);
     }
-    double sound_speed(double density) const { return std::sqrt((bulk + 4.0 / 3.0 * shear) / density); }
+    double sound_speed(double density) const { return sound_speed_in(bulk, shear, density); }
     double explicit_viscosity() const { return 0.0; }
 };
 
