@@ -246,6 +246,33 @@ TEST_CASE("A cell that runs off on all sides retains none and is not overdrawn",
     CHECK(std::abs(flow.volume_residual()) < 1e-14 * flow.status().volume_given);
 }
 
+TEST_CASE("What is left of a cell that runs out is no faster than the front of a dam break", "[water][conserve]") {
+    // Water from four sides fills the middle in the first stage, and all of it leaves in the second. Rain falls on what
+    // is left.
+    constexpr double kDepth = 0.0246;
+    WaterScene s;
+    s.grid = verify::cells_over(5, 4, 0.013671875);
+    s.start = [&](double x, double y) {
+        const Index i = static_cast<Index>(x / s.grid.cell), j = static_cast<Index>(y / s.grid.cell);
+        return WaterState{std::abs(i - 2) + std::abs(j - 2) == 1 ? kDepth : 0.0};
+    };
+    s.rain = [](double, double) { return 6e-4; };
+    s.sides.fill(WaterSide::open);
+    WaterFlow flow(s);
+    double fastest = 0.0;
+    for (int step = 0; step < 10; ++step) {
+        flow.advance(1.0);
+        fastest = std::max(fastest, flow.status().max_speed);
+    }
+    CHECK(fastest > 0.0);
+    CHECK(fastest < 2.0 * std::sqrt(flow.body().gravity * kDepth));
+    CHECK(std::abs(flow.volume_residual()) < 1e-13 * flow.status().volume_given);
+    const WaterLedger& l = flow.status().ledger;
+    const double scale = l.ground.norm() + l.friction.norm() + l.momentum_left.norm();
+    CHECK(l.friction.norm() > 0.0);  // the bound has taken something
+    CHECK(flow.momentum_residual().norm() < 1e-12 * scale);
+}
+
 TEST_CASE("A wall is a mirror", "[water][conserve]") {
     const auto bed = [](double x, double y) { return rough(std::abs(x - 10.0), std::abs(y - 6.0)); };
     const auto start = [](double x, double y) {

@@ -291,8 +291,50 @@ Vec2 steep_force(const WaterBody& body, Index k, double h, const Vec2& v, const 
     return h * (body.normal_gravity[k] - weight / (1.0 + climbs)) * slope;
 }
 
-/// Runs a stage from fields on a tile: each(storage index, i, j, change) for its cells, and the half of what
-/// it records.
+/// Water of one cell.
+struct Water {
+    double h, qx, qy;
+};
+
+/// A cell among those around it, as a stage found them.
+struct Place {
+    const WaterBlock& block;
+    Index k;
+};
+
+/// Bound of the speed on the map after a stage [m/s]. Nothing that reaches the cell is faster than a dam break's front, or
+/// than its fall makes it.
+double fastest_around(const WaterBody& body, const Place& of) {
+    const WaterBlock& block = of.block;
+    double most = 0.0;
+    for (const Index at : {of.k, of.k - 1, of.k + 1, of.k - kRow, of.k + kRow}) {
+        const double front =
+            std::hypot(block.u[at], block.v[at]) + 2.0 * std::sqrt(block.normal_gravity[at] * block.depth[at]);
+        const double fall = std::abs(block.surface[at] - block.surface[of.k]);
+        most = std::max(most, front * front + 2.0 * body.gravity * fall);
+    }
+    return std::sqrt(most);
+}
+
+/// More than half of a cell's water has left in a stage.
+[[gnu::always_inline]] inline bool runs_out(const Place& of, const Water& w) {
+    return w.h < 0.5 * of.block.depth[of.k];
+}
+
+/// THEORY, section 3. Where nearly all of a cell's water leaves, the force of its pressure stays with what is left. `own`:
+/// speed that the cell has had in this step already [m/s]. Returns the momentum that goes beyond the bound, over density
+/// and area [m^2/s].
+Vec2 bound_speed(const WaterBody& body, const Place& of, double own, Water& w) {
+    const Vec2 before(w.qx, w.qy);
+    const double most = w.h * std::max(own, fastest_around(body, of)), discharge = before.norm();
+    if (discharge <= most) return Vec2(0, 0);
+    const Vec2 after = most / discharge * before;
+    w.qx = after.x(), w.qy = after.y();
+    return before - after;
+}
+
+/// Runs a stage from fields on a tile: each(storage index, i, j, change, place) for its cells, and the half of what it
+/// records.
 template <class Each>
 void run_stage(const WaterBody& body, const WaterFields& from, Index tile, double dt, WaterLedger& ledger,
                Each&& each) {
@@ -320,16 +362,11 @@ void run_stage(const WaterBody& body, const WaterFields& from, Index tile, doubl
                 change.qx += turned.x(), change.qy += turned.y(), change.pressure_force += turned;
             }
             tile_ledger.ground += change.pressure_force;
-            each(body.grid.at(i, j), i, j, change);
+            each(body.grid.at(i, j), i, j, change, Place{s.block, k});
         }
     tile_ledger.ground -= tile_ledger.walls;
     ledger.add(tile_ledger, 0.5 * body.grid.cell() * body.grid.cell());
 }
-
-/// Water of one cell.
-struct Water {
-    double h, qx, qy;
-};
 
 /// Something slows water at the bed.
 bool brakes_of(const WaterBody& body) {
@@ -428,9 +465,15 @@ void feed_and_soak(const WaterBody& body, Index k, double dt, Water& w, WaterLed
     }
 }
 
-/// Sources, rain, infiltration and friction at the end of a step, recorded in cells of unit area. Friction's work is
-/// its impulse times the mean of the velocities at the start and at the end. What it holds at rest or at one speed
-/// loses no more than it falls.
+/// Friction's work is its impulse times the mean of the velocities at the start and at the end. What it holds at rest or at
+/// one speed loses no more than it falls. In cells of unit area.
+void record_friction(const WaterBody& body, Index k, const Vec2& taken, const Water& w, WaterLedger& ledger) {
+    const Vec2 after = w.h > body.film ? Vec2(Vec2(w.qx, w.qy) / w.h) : Vec2(0, 0);
+    ledger.friction -= taken;
+    ledger.braked += 0.5 * along_ground(body, k, taken, velocity_before(body, k) + after);
+}
+
+/// Sources, rain, infiltration and friction at the end of a step, recorded in cells of unit area.
 void finish_cell(const WaterBody& body, Index k, double dt, Water& w, WaterLedger& ledger) {
     if (body.rain || body.infiltration || body.fed) feed_and_soak(body, k, dt, w, ledger);
     const Vec2 driven(w.qx, w.qy);
@@ -439,10 +482,7 @@ void finish_cell(const WaterBody& body, Index k, double dt, Water& w, WaterLedge
     else
         w.qx = w.qy = 0.0;
     const Vec2 taken = driven - Vec2(w.qx, w.qy);
-    if (taken.x() == 0.0 && taken.y() == 0.0) return;
-    const Vec2 after = w.h > body.film ? Vec2(Vec2(w.qx, w.qy) / w.h) : Vec2(0, 0);
-    ledger.friction -= taken;
-    ledger.braked += 0.5 * along_ground(body, k, taken, velocity_before(body, k) + after);
+    if (taken.x() != 0.0 || taken.y() != 0.0) record_friction(body, k, taken, w, ledger);
 }
 
 /// Which tiles water in cell (i, j) of a tile is near: it reaches two cells in a step.
@@ -483,22 +523,36 @@ void for_each_listed_tile(const WaterBody& body, Body&& each) {
     for (Index n = 0; n < count; ++n) each(static_cast<std::size_t>(n), body.work[static_cast<std::size_t>(n)]);
 }
 
+/// Of a cell's speeds at the start of a step and after the first stage, before friction [m/s].
+double fastest_so_far(const WaterBody& body, Index k, const Vec2& driven) {
+    const double h = body.half.h[k];
+    return std::max(velocity_before(body, k).norm(), h > body.film ? driven.norm() / h : 0.0);
+}
+
 }  // namespace
 
 /// The second stage's fluxes are those of water that friction has slowed. On a slope it would otherwise run too far, by
 /// half of what gravity gives it in a step.
 void first_stage(WaterBody& body, double dt) {
     const bool brakes = brakes_of(body);
+    const double area = body.grid.cell() * body.grid.cell();
     for_each_listed_tile(body, [&](std::size_t n, Index tile) {
         body.sums[n] = WaterSums{};
-        run_stage(body, body.now, tile, dt, body.sums[n].ledger, [&](Index k, Index, Index, const Change& change) {
+        WaterLedger beyond;
+        const auto each = [&](Index k, Index, Index, const Change& change, const Place& place) {
             Water w{body.now.h[k] + change.h, body.now.qx[k] + change.qx, body.now.qy[k] + change.qy};
+            if (runs_out(place, w)) {
+                const Vec2 taken = bound_speed(body, place, velocity_before(body, k).norm(), w);
+                record_friction(body, k, taken, w, beyond);
+            }
             if (brakes) {
                 body.driven_x[k] = w.qx, body.driven_y[k] = w.qy;
                 if (w.h > body.film) brake(body, k, dt, w);
             }
             body.half.h[k] = w.h, body.half.qx[k] = w.qx, body.half.qy[k] = w.qy;
-        });
+        };
+        run_stage(body, body.now, tile, dt, body.sums[n].ledger, each);
+        body.sums[n].ledger.add(beyond, 0.5 * area);
     });
 }
 
@@ -510,14 +564,19 @@ void second_stage(WaterBody& body, double dt) {
     for_each_listed_tile(body, [&](std::size_t n, Index tile) {
         WaterSums& sums = body.sums[n];
         WaterLedger ends;
-        run_stage(body, body.half, tile, dt, sums.ledger, [&](Index k, Index i, Index j, const Change& change) {
+        const auto each = [&](Index k, Index i, Index j, const Change& change, const Place& place) {
             const auto mean = [&](double start, double half, double by) { return 0.5 * (start + (half + by)); };
             Water w{mean(body.now.h[k], body.half.h[k], change.h), mean(body.now.qx[k], driven_x[k], change.qx),
                     mean(body.now.qy[k], driven_y[k], change.qy)};
+            if (runs_out(place, w)) {
+                const Vec2 taken = bound_speed(body, place, fastest_so_far(body, k, {driven_x[k], driven_y[k]}), w);
+                record_friction(body, k, taken, w, ends);
+            }
             finish_cell(body, k, dt, w, ends);
             count(body, k, i, j, w, sums);
             body.now.h[k] = w.h, body.now.qx[k] = w.qx, body.now.qy[k] = w.qy;
-        });
+        };
+        run_stage(body, body.half, tile, dt, sums.ledger, each);
         sums.ledger.add(ends, area);
         scale(sums, area);
     });

@@ -232,6 +232,8 @@ void learn_water(const Scene& scene, Facts& facts) {
         facts.bears = scene.water->exchange.pore_pressure;
     }
     learn_inflows(scene, facts);
+    // A cell that nothing flows into has dh/dt = -h u / cell. So it runs out to a film on a way of ln(h / film) cells.
+    facts.drained_drop = facts.one_cell_drop * std::max(0.0, std::log(facts.release_depth / WaterScene().film));
     for (const WaterPhase::Side& side : scene.water->sides)  // water comes in from so high
         if (side.is == WaterPhase::Side::Is::level) facts.highest_rain = std::max(facts.highest_rain, side.level);
     if (scene.water->rain.values.empty()) return;

@@ -46,6 +46,7 @@ struct Facts {
     bool cancels = false;       ///< impulses of weight and pressure are recorded each, and cancel where material rests
     double displaces = 0.0;     ///< weight of the water that columns can displace [N]
     double bears = 1.0;         ///< share of that which bears them (WaterExchange::pore_pressure) [1]
+    double drained_drop = 0.0;  ///< fall of free water that has left a cell but for a film [m]
     bool virtual_mass = false;  ///< columns carry water's inertia: they part from it by what a step gets wrong
     double highest_rain = -std::numeric_limits<double>::infinity();  ///< highest ground that rain falls on [m]
 };

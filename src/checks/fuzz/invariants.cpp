@@ -180,7 +180,10 @@ std::optional<Violation> Watch::energy(const Snapshot& state) {
     const double slope = slope_uphill();
     const double gone = now.energy_left - first.energy_left - now.mass_left * facts_.gravity * lowest_;
     const double uphill = slope * slope / (1.0 + slope * slope) * (now.kinetic + std::max(0.0, gone));
-    const double lifted = facts_.displaces * (facts_.one_cell_drop + (1.0 - facts_.bears) * (highest_ - lowest_));
+    // Half of water's cells at walls lies beyond them, and columns displace water there too.
+    const double beyond_walls = facts_.walls ? deepest_ : 0.0;
+    const double lifted =
+        facts_.displaces * (facts_.one_cell_drop + (1.0 - facts_.bears) * (highest_ - lowest_) + beyond_walls);
     const double share = kEnergyShare * (at_hand_ + turned_over_);
     return judged("energy", growth, facts_.hidden_energy + share + uphill + recorded + bends + lifted + round_off,
                   state, "mechanical energy gained beyond the work of gravity [J]");
@@ -196,7 +199,7 @@ std::optional<Violation> Watch::speed(const Snapshot& state) {
     const double uphill = facts_.energy_law ? std::hypot(1.0, slope_uphill()) : 1.0;  // otherwise in `stretch`
     const double wave =
         std::max(start_.fastest(), facts_.inflow_speed) + 2.0 * uphill * std::sqrt(facts_.gravity * deepest_);
-    const double drop = std::max(0.0, highest_ - lowest_);
+    const double drop = std::max(0.0, highest_ - lowest_) + facts_.drained_drop;
     const double bound = facts_.stretch * facts_.stretch * std::sqrt(wave * wave + 2.0 * facts_.gravity * drop);
     return judged("speed", state.max_speed, (1.0 + beyond(bound)) * bound, state, "speed beyond the energy line [m/s]");
 }
