@@ -166,6 +166,65 @@ TEST_CASE("A run has the same bits whatever the time between its frames, which a
     }
 }
 
+namespace {
+
+/// What frames show of peaks, one after the other.
+class PeaksOfFrames final : public Observer {
+public:
+    std::string name() const override { return "peaks"; }
+    void observe(const Frame& frame) override {
+        for (const char* field : {"peak_depth", "peak_speed", "peak_pressure", "peak_dynamic_pressure"}) {
+            const std::vector<double> now = values_of(frame, field);
+            std::vector<double>& before = before_[field];
+            for (std::size_t k = 0; k < before.size(); ++k) fallen_ += now[k] < before[k];
+            before = now;
+        }
+        const std::vector<double> now = values_of(frame, "arrival_time");
+        std::vector<double>& before = before_["arrival_time"];
+        for (std::size_t k = 0; k < before.size(); ++k) fallen_ += before[k] >= 0.0 && now[k] != before[k];
+        for (const double arrival : now) ahead_ += arrival > frame.status.time;
+        before = now;
+        largest_ = *std::max_element(before_["peak_depth"].begin(), before_["peak_depth"].end());
+    }
+    void end(const Frame& last) override { at_end_ = values_of(last, "peak_depth"); }
+
+    Index fallen() const { return fallen_; }  ///< nodes whose peak fell, or whose arrival changed, between two frames
+    Index ahead() const { return ahead_; }    ///< nodes that were reached after the frame's time
+    double largest() const { return largest_; }  ///< peak depth of the last frame [m]
+    bool ends_with_last() const { return at_end_ == before_.at("peak_depth"); }
+
+private:
+    static std::vector<double> values_of(const Frame& frame, const char* name) {
+        const Field& field = *frame.node(name);
+        return {field.data, field.data + field.count};
+    }
+    std::map<std::string, std::vector<double>> before_;
+    std::vector<double> at_end_;
+    Index fallen_ = 0, ahead_ = 0;
+    double largest_ = 0.0;
+};
+
+}  // namespace
+
+TEST_CASE("Peaks never fall from one frame to the next, nor do times of arrival change", "[conserve][peaks]") {
+    Scene scene = gully();
+    if (GENERATE(false, true)) scene.deposition = Deposition{0.5};
+    for (const double every : {0.05, 0.23}) {
+        DepthAveraged simulation(scene);
+        Observers observers;
+        observers.push_back(std::make_unique<PeaksOfFrames>());
+        const auto& peaks = static_cast<const PeaksOfFrames&>(*observers.back());
+        std::ostringstream stream;
+        Progress progress(stream, Progress::Style::silent, scene.density);
+        const RunSummary summary = run(simulation, {20.0, every, false}, observers, Interrupt(), progress);
+        REQUIRE(summary.frames > summary.steps / 4);
+        CHECK(peaks.fallen() == 0);
+        CHECK(peaks.ahead() == 0);
+        CHECK(peaks.ends_with_last());
+        CHECK(peaks.largest() == summary.extremes.max_depth);
+    }
+}
+
 TEST_CASE("The status of a frame without its fields has the same bits", "[conserve]") {
     const Scene scene = gully();
     DepthAveraged looked_at(scene), asked(scene);

@@ -4,6 +4,7 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
+#include "run/simulation.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -143,4 +144,103 @@ TEST_CASE("The speed at a place on a slope is that along the bed, as frames have
     const Sample there = run.at({20.0, 20.0});
     REQUIRE(there.velocity.x() > 3.0);
     CHECK(there.speed == Approx(there.velocity.norm() * std::hypot(1.0, slope)).epsilon(1e-9));
+}
+
+namespace {
+
+/// What a run tells of itself at its steps, and what its peaks show at the end.
+struct Told {
+    double depth = 0.0, speed = 0.0;            ///< largest of the steps' statuses [m], [m/s]
+    double peak_depth = 0.0, peak_speed = 0.0;  ///< largest of the nodes at the end
+};
+
+double largest(const Field& field) { return *std::max_element(field.data, field.data + field.count); }
+
+Told told_by(const Scene& scene) {
+    const std::unique_ptr<Simulation> run = make_simulation(scene);
+    Told told;
+    const auto note = [&] {
+        told.depth = std::max(told.depth, run->status().max_depth);
+        told.speed = std::max(told.speed, run->status().max_speed);
+    };
+    note();
+    while (run->status().time < scene.end) run->advance(scene.end), note();
+    const Frame end = run->frame();
+    told.peak_depth = largest(*end.node("peak_depth")), told.peak_speed = largest(*end.node("peak_speed"));
+    return told;
+}
+
+/// A slab that slides down a slope against a wall, for a second.
+Scene slab() {
+    Scene scene = scene_on(31, 21, 1.0, [](double x, double) { return 20.0 - 0.25 * x; });
+    scene.sides = Sides::wall;
+    fill(scene, [](double x, double y) { return x > 14 && x < 28 && y > 6 && y < 14 ? 1.2 : 0.0; });
+    scene.particles.vx.assign(scene.particles.x.size(), 8.0);
+    scene.end = 1.0;
+    return scene;
+}
+
+/// The same with 3D points from one time to another.
+Scene in_3d(double from, std::optional<double> until) {
+    Scene scene = slab();
+    SolidStage stage;
+    stage.from = from, stage.until = until;
+    stage.window = {17, 0, 30, 20};
+    stage.cell = 0.5, stage.spacing = 0.25;
+    stage.law = solid::Fluid{};
+    scene.solid = stage;
+    return scene;
+}
+
+}  // namespace
+
+TEST_CASE("The largest depth and speed that a run tells of are those of its peaks", "[peaks][stages]") {
+    SECTION("of depth-averaged flow") {
+        const Told told = told_by(slab());
+        CHECK(told.depth == told.peak_depth);
+        CHECK(told.speed == told.peak_speed);
+    }
+    SECTION("of an inflow, next to what holds it up") {
+        Scene scene = slab();
+        Inflow inflow;
+        inflow.line = {{8, 2}, {12, 12}, {10, 18}};
+        inflow.spacing = 0.5;
+        inflow.time = {0.0, 0.5, 2.0}, inflow.discharge = {0.0, 120.0, 20.0}, inflow.speed = {1.0, 5.0, 3.0};
+        scene.inflows = {inflow};
+        for (const bool with_slab : {false, true}) {
+            if (!with_slab) scene.particles = {};
+            const Told told = told_by(scene);
+            CHECK(told.depth == told.peak_depth);
+            scene.particles = slab().particles;
+        }
+    }
+    SECTION("of a release that enters later") {
+        Scene scene = slab();
+        Seeds late = scene.particles;
+        LateRelease release;
+        release.seeds = std::move(late), release.at = 0.3;
+        scene.late = {release};
+        const Told told = told_by(scene);
+        CHECK(told.depth == told.peak_depth);
+        CHECK(told.speed == told.peak_speed);
+    }
+    SECTION("of points in 3D") {
+        const double from = GENERATE(0.0, 0.2);
+        const double until = GENERATE(0.2, 0.3, 0.5);
+        CAPTURE(from, until);
+        Scene scene = in_3d(from, until);
+        scene.end = until;  // while depths before the wall grow
+        const Told told = told_by(scene);
+        CHECK(told.depth == told.peak_depth);
+        CHECK(told.speed >= told.peak_speed);  // the fastest point's, and cells average points
+    }
+    SECTION("of structured solids") {
+        Scene scene = slab();
+        Structure structure;
+        structure.material.young = 2e6, structure.material.critical_strain = 0.05, structure.cohesion = 1e9;
+        scene.structure = structure;
+        const Told told = told_by(scene);
+        CHECK(told.depth == told.peak_depth);
+        CHECK(told.speed == told.peak_speed);
+    }
 }

@@ -10,7 +10,9 @@
 #include "checks/verify/trial.h"
 #include "fake_gis.h"
 #include "fresh_folder.h"
+#include "run/simulation.h"
 #include "scene/build_scene.h"
+#include "scene/scene_parts.h"
 
 using namespace frana;
 
@@ -495,6 +497,73 @@ TEST_CASE("A depth raster is interpolated on finer cells: no steps, each pixel's
     for (Index k = 0; k < 20; ++k)
         CHECK(volume[static_cast<std::size_t>(k)] ==
               Approx(400.0 * gis.rasters["depth.tif"].values[static_cast<std::size_t>(k)]).epsilon(round_off));
+}
+
+TEST_CASE("Depths of particles stay within those of the raster's pixels around them", "[scene]") {
+    FakeGis gis = slope_gis();
+    const double pixel = GENERATE(2.5, 5.0, 10.0, 20.0);  // cells are 5 m
+    const GridGeometry pixels{5, 4, 1050 + 0.5 * pixel, 2040 + 0.5 * pixel, pixel};
+    std::uint64_t dice = 7;
+    gis.rasters["depth.tif"] = sampled(pixels, [&](double, double) {
+        dice = dice * 6364136223846793005u + 1442695040888963407u;
+        return 0.2 + 2.0 * static_cast<double>(dice >> 40) / 16777216.0;
+    });
+    Raster& depth = gis.rasters["depth.tif"];
+    depth.at(2, 1) = 9.0;             // a peak
+    depth.at(4, 3) = Raster::nodata;  // and an end
+    const Scene scene = built(with_release("depth = \"depth.tif\""), gis).scene;
+    const Seeds& seeds = scene.particles;
+    CAPTURE(pixel);
+    const std::unique_ptr<Simulation> run = make_simulation(scene);
+    const Field peaks = *run->frame().node("peak_depth");
+    CHECK(*std::max_element(peaks.data, peaks.data + peaks.count) <= 9.0 * (1.0 + round_off));
+    CHECK(*std::max_element(seeds.depth.begin(), seeds.depth.end()) == Approx(9.0).epsilon(round_off));
+    std::vector<double> volume(20, 0.0);
+    for (Index p = 0; p < seeds.count(); ++p) {
+        const auto i = static_cast<Index>((seeds.x[p] - 1050) / pixel),
+                   j = static_cast<Index>((seeds.y[p] - 2040) / pixel);
+        double low = depth.at(i, j), high = low;
+        for (Index b = std::max<Index>(j - 1, 0); b <= std::min<Index>(j + 1, 3); ++b)
+            for (Index a = std::max<Index>(i - 1, 0); a <= std::min<Index>(i + 1, 4); ++a)
+                if (depth.at(a, b) > 0.0) low = std::min(low, depth.at(a, b)), high = std::max(high, depth.at(a, b));
+        CHECK(seeds.depth[p] <= high * (1.0 + round_off));
+        CHECK(seeds.depth[p] >= low * (1.0 - round_off));
+        volume[static_cast<std::size_t>(i + 5 * j)] += seeds.volume[p];
+    }
+    for (std::size_t k = 0; k < volume.size(); ++k)
+        CHECK(volume[k] == Approx(depth.values[k] > 0.0 ? pixel * pixel * depth.values[k] : 0.0).epsilon(round_off));
+}
+
+TEST_CASE("Depths on finer cells are of second order, also at a hill's top", "[scene]") {
+    // Means over pixels of waves on [-1, 1]^2. On a hill's highest pixel depths are even. Its slope there is the curvature
+    // times a pixel at most, and that times half a pixel the error: 2 size^2 along each axis for a curvature of 4.
+    const auto mean_of = [](double middle, double size, double shift) {
+        return (std::sin(2.0 * (middle + 0.5 * size) + shift) - std::sin(2.0 * (middle - 0.5 * size) + shift)) /
+               (2.0 * size);
+    };
+    const auto field_of = [&](const GridGeometry& g) {
+        Raster field = Raster::filled(g, 0.0);
+        for (Index j = 0; j < g.ny; ++j)
+            for (Index i = 0; i < g.nx; ++i)
+                field.at(i, j) = 2.0 + mean_of(g.x(i), g.cell, 0.1) * mean_of(g.y(j), g.cell, -0.2);
+        return field;
+    };
+    for (const Index count : {20, 40, 80, 160}) {
+        const double size = 2.0 / static_cast<double>(count);
+        const Raster fine =
+            finer_field(field_of({count, count, -1.0 + 0.5 * size, -1.0 + 0.5 * size, size}), 0.25 * size);
+        REQUIRE(fine.geometry.nx == 4 * count);
+        const Raster exact = field_of(fine.geometry);
+        double worst = 0.0, sum = 0.0;
+        for (Index j = 4; j < fine.geometry.ny - 4; ++j)  // at the edge depths end
+            for (Index i = 4; i < fine.geometry.nx - 4; ++i) {
+                const double error = std::abs(fine.at(i, j) - exact.at(i, j));
+                worst = std::max(worst, error), sum += error;
+            }
+        CAPTURE(count, worst, sum);
+        CHECK(worst < 4.0 * size * size);
+        CHECK(sum / static_cast<double>(fine.geometry.size()) < 0.1 * size * size);  // few pixels are the highest
+    }
 }
 
 TEST_CASE("Each polygon of a barrier's outline can be its own barrier", "[scene]") {

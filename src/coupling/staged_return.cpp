@@ -119,6 +119,7 @@ bool StagedRun::behind_barrier(const Vec3& from, const Vec2& place) const {
 /// They become columns. What these have no place for, motion up and down and against each other, is lost.
 void StagedRun::convert_to_2d() {
     const double time = points_->status().time;
+    note_largest();
     for (const DepartedPoint& point : returning_) returned_.mass += point.mass, returned_.lost += point.energy;
     const MovingColumns columns =
         columns_of(returning_, scene_,
@@ -131,6 +132,7 @@ void StagedRun::convert_to_2d() {
 /// All points become columns, and the window is a part of the map like any other.
 void StagedRun::end_3d() {
     timed_("3D to 2D", [&] {
+        note_largest();
         points_->set_adjacent(GhostParticles{});
         points_->leave();
         columns_->close_exits();

@@ -121,6 +121,7 @@ void StagedRun::begin_3d(const std::function<FlowColumns(const Marks&)>& columns
         points_->note_departed();
         if (columns_watch_) begin_watch();
         at_edge_ = nodes_at_edge(scene_);
+        note_largest();
         columns_->open_exits(inside, true);
     });
     const Status& now = columns_->status();  // what they gave counts as left
@@ -239,6 +240,12 @@ void StagedRun::sample(double until) {
     moved_ = 0.0;
 }
 
+/// To be called before material passes from one model to the other, and the map forgets it.
+void StagedRun::note_largest() {
+    deepest_ = std::max({deepest_, columns_->status().max_depth, map_.extent().max_depth});
+    fastest_ = std::max({fastest_, columns_->status().max_speed, points_->status().max_speed});
+}
+
 /// Sums of both models. All energy that the points lost counts as dissipated. What columns do not have, that of their
 /// compression, is in the residual.
 void StagedRun::accumulate(const Status& columns) {
@@ -278,8 +285,9 @@ void StagedRun::accumulate(const Status& columns) {
     status_.in_3d = {s.friction, -s.contact_work, s.material, s.numerical() + lost, s.volume};
     status_.dissipated += s.energy_given - s.kinetic - s.potential - s.stored - s.energy_left + lost;
     status_.energy_left += s.energy_left - converted_.energy - energy_back - returned_.lost;
-    status_.max_depth = std::max(columns.max_depth, map_.extent().max_depth);
-    status_.max_speed = std::max(columns.max_speed, s.max_speed);
+    status_.max_depth = std::max({deepest_, columns.max_depth, map_.extent().max_depth});
+    status_.max_speed = std::max({fastest_, columns.max_speed, s.max_speed});
+    deepest_ = fastest_ = 0.0;
     status_.max_speed_on_map = std::max(columns.max_speed_on_map, s.max_speed);
     status_.mean_speed = status_.mass > 0.0 ? (columns.mean_speed * columns.mass + s.speeds) / status_.mass : 0.0;
     status_.covered_area += map_.extent().covered_area;

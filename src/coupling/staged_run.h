@@ -106,6 +106,7 @@ private:
     double depth_of_points() const { return became_points_ > 0.0 ? their_depth_ / became_points_ : 0.0; }
     void remark_pieces(std::vector<std::string>& remarks) const;
     void accumulate(const Status& columns);
+    void note_largest();
     void serialize_returning(Archive& archive);
     void particle_fields(Frame& frame);
     void node_fields(Frame& frame);
@@ -128,6 +129,8 @@ private:
     Returned returned_;
     bool ended_ = false;  ///< the 3D stage is over: its points, none, only have its sums
     Status status_;
+    /// Of both models in this step, before one was changed: peaks have them already [m], [m/s].
+    double deepest_ = 0.0, fastest_ = 0.0;
     StepClock timed_;
     double moved_ = 0.0;  ///< farthest way of a point since the last sample of the map [m]
     PointsApart apart_;

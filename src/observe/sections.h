@@ -38,8 +38,10 @@ struct SectionSummary {
 double discharge_through(const SectionLine& section, double spacing, const Probe& probe);
 
 /// sections/<name>.csv: what passes named lines, after every step; appended at every output. Columns: t [s], discharge
-/// [m3/s] (of the nodes at that time), volume [m3] (net since the start, exact: counted by the particles that passed),
-/// sediment [m3] (the solid part of that volume).
+/// [m3/s] (of the nodes at that time), volume [m3] (net since the start), sediment [m3] (the solid part of that volume).
+/// The volume counts particles with the mass that each has as it passes, exactly. So flow that takes up its bed on the
+/// way passes with it, and what becomes bed before a line does not. Flow and bed beyond a line together gain the volume,
+/// but for bed on the line itself. Nodes on one side of it exchange mass with particles on the other, a cell or two away.
 class Sections final : public Observer {
 public:
     Sections(const std::filesystem::path& run_dir, std::vector<SectionLine> lines, double spacing,

@@ -7,6 +7,28 @@
 namespace frana {
 namespace {
 
+/// The least and the largest depth of pixel (i, j) and the eight around it, of those that have material.
+struct DepthRange {
+    double low, high;
+};
+DepthRange range_around(const Raster& field, Index i, Index j) {
+    const GridGeometry& g = field.geometry;
+    DepthRange range{field.at(i, j), field.at(i, j)};
+    for (Index b = std::max<Index>(j - 1, 0); b <= std::min(j + 1, g.ny - 1); ++b)
+        for (Index a = std::max<Index>(i - 1, 0); a <= std::min(i + 1, g.nx - 1); ++a)
+            if (const double depth = field.at(a, b); depth > 0.0)
+                range.low = std::min(range.low, depth), range.high = std::max(range.high, depth);
+    return range;
+}
+
+/// The share of the differences from a pixel's own depth with which all depths of its parts stay within a range.
+double share_within(const DepthRange& range, double own, double lowest, double highest) {
+    double share = 1.0;
+    if (highest > range.high) share = std::min(share, (range.high - own) / (highest - own));
+    if (lowest < range.low) share = std::min(share, (own - range.low) / (own - lowest));
+    return share;
+}
+
 /// Between the middles of pixel (i, j) and its neighbours, at (u, v) pixels from its middle. Where a neighbour has no
 /// material the pixel's own depth stands for it, so that material ends where it did.
 double between(const Raster& field, Index i, Index j, double u, double v) {
@@ -47,8 +69,15 @@ Raster finer_field(const Raster& field, double cell) {
                 depth = between(field, i, j, place(a), place(b));
                 sum += depth;
             });
-            const double keep = field.at(i, j) * double(parts * parts) / sum;  // the pixel's volume stays the same
-            each([&](Index, Index, double& depth) { depth *= keep; });
+            const double own = field.at(i, j);
+            const double keep = own * double(parts * parts) / sum;  // the pixel's volume stays the same
+            double lowest = own, highest = own;
+            each([&](Index, Index, double& depth) {
+                depth *= keep;
+                lowest = std::min(lowest, depth), highest = std::max(highest, depth);
+            });
+            const double share = share_within(range_around(field, i, j), own, lowest, highest);
+            if (share < 1.0) each([&](Index, Index, double& depth) { depth = own + share * (depth - own); });
         }
     return result;
 }

@@ -314,7 +314,9 @@ void add_run(Table& table) {
              "faster than two cells in the time so far, and no front runs on"));
     table.push_back(number("time.rest_fraction", "1", {0.0, 1.0, true, true}, 0.05,
                            "mean speed, as a share of its peak, above which nothing is taken for rest"));
-    table.push_back(number("output.every", "s", at_least(1e-9), 1.0, "time between frames, which are hit exactly"));
+    table.push_back(number("output.every", "s", at_least(1e-9), 1.0,
+                           "time between frames, which are hit exactly; peaks and "
+                           "arrival in a frame are those of the run's own steps until then"));
     Parameter formats = make("output.formats", Kind::words, "", "what is written");
     formats.choices = {"vtk", "xdmf", "geotiff", "png", "web", "netcdf"};
     formats.may_be_empty = true;

@@ -104,7 +104,8 @@ std::optional<SolidStage> read_solid_stage(const CaseFile& file, const Scene& sc
 std::vector<Insitu> read_insitu(const CaseFile& file, const Scene& scene, Problems& problems);
 
 /// A depth field whose pixels are larger than `cell`, on pixels that are not. It is bilinear between their middles.
-/// Each pixel's volume and the material's edge stay as they were.
+/// Each pixel's volume and the material's edge stay as they were. No depth leaves the range of the pixel and its
+/// neighbours (after Barth and Jespersen 1989, AIAA 89-0366), so a pixel that is the highest around stays even.
 Raster finer_field(const Raster& field, double cell);
 
 /// Nodes under a release: those inside the outline or next to its edge, where the depth field has material.

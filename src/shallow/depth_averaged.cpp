@@ -219,6 +219,8 @@ void DepthAveraged::arrive(const PointSums& points) {
     NodeSums sums = raise_surface();
     if (!supported_.empty()) timed_("inflow", [&] { leave_support_out(sums); });
     const FlowSpeeds speeds = timed_("peaks", [&] {
+        // The run does not come by states aside. Their peaks would be gone in the next frame.
+        if (aside_) return speeds_of_nodes(flow_, steep_, curved_, footprint_depth_);
         put_peaks_aside();
         const FlowSpeeds all = update_peaks(flow_, steep_, curved_, status_.time, footprint_depth_, peaks_);
         put_peaks_back();

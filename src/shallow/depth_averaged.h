@@ -186,7 +186,7 @@ private:
         Index k;
         double depth, arrival, speed, pressure, dynamic_pressure;
     };
-    std::vector<NodePeaks> peaks_aside_;  ///< of nodes whose depth is no flow's
+    std::vector<NodePeaks> peaks_aside_;  ///< of nodes where an inflow is held up
     std::optional<Passages> passages_;    ///< nothing without sections
     bool births_wanted_ = false;
     Index end_of_births_ = 0;  ///< number after that of the last point that a split made

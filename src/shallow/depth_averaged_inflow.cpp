@@ -179,16 +179,22 @@ void DepthAveraged::leave_support_out(NodeSums& sums) {
 void DepthAveraged::put_peaks_aside() {
     peaks_aside_.clear();
     for (const Supported& node : supported_)
-        if (is_support(node))
-            peaks_aside_.push_back({node.k, peaks_.depth[node.k], peaks_.arrival[node.k], peaks_.speed[node.k],
-                                    peaks_.pressure[node.k], peaks_.dynamic_pressure[node.k]});
+        peaks_aside_.push_back({node.k, peaks_.depth[node.k], peaks_.arrival[node.k], peaks_.speed[node.k],
+                                peaks_.pressure[node.k], peaks_.dynamic_pressure[node.k]});
 }
 
+/// Peaks are of the flow's own depth, which frames and the status show. Where most is support there is no speed either.
 void DepthAveraged::put_peaks_back() {
     for (const NodePeaks& had : peaks_aside_) {
-        peaks_.depth[had.k] = had.depth, peaks_.arrival[had.k] = had.arrival, peaks_.speed[had.k] = had.speed;
-        peaks_.pressure[had.k] = had.pressure, peaks_.dynamic_pressure[had.k] = had.dynamic_pressure;
-        const double own = own_depth(had.k);  // frames show it, and none may show more than the peak
+        const double own = own_depth(had.k), all = flow_.nodes.depth[had.k];
+        peaks_.depth[had.k] = had.depth, peaks_.arrival[had.k] = had.arrival, peaks_.pressure[had.k] = had.pressure;
+        if (is_support(had.k)) {
+            peaks_.speed[had.k] = had.speed, peaks_.dynamic_pressure[had.k] = had.dynamic_pressure;
+        } else if (all > 0.0) {
+            const Pair& v = flow_.nodes.before[had.k];
+            const double pressure = bed_contact(flow_, steep_, curved_, had.k, v.x, v.y).pressure * (own / all);
+            peaks_.pressure[had.k] = std::max(had.pressure, pressure);
+        }
         if (own > footprint_depth_ && !(had.depth > footprint_depth_)) peaks_.arrival[had.k] = status_.time;
         peaks_.depth[had.k] = std::max(had.depth, own);
     }

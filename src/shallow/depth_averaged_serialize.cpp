@@ -150,12 +150,12 @@ std::vector<Index> DepthAveraged::tiles_of_a_step() const {
     return tiles;
 }
 
-/// Where nothing ever was, peaks are zero and are not saved.
+/// Where nothing ever was, peaks are zero and are not saved. Steps aside leave them as they are.
 void DepthAveraged::serialize_peaks(Archive& archive) {
+    if (archive.aside()) return;
     const Archive::Part part(archive, "peaks");
     std::vector<Index> tiles;
-    if (archive.aside() && !archive.loading()) tiles = tiles_of_a_step();
-    for (Index tile = 0; !archive.aside() && !archive.loading() && tile < flow_.grid.tiles(); ++tile) {
+    for (Index tile = 0; !archive.loading() && tile < flow_.grid.tiles(); ++tile) {
         bool reached = false;
         for_each_node_of(flow_.grid, tile, [&](Index k, Index, Index) { reached |= peaks_.depth[k] > 0.0; });
         if (reached) tiles.push_back(tile);

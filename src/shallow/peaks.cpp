@@ -39,7 +39,11 @@ BedContact bed_contact(const Flow& flow, bool steep, bool curved, Index k, doubl
     return {c.speed, c.pressure};
 }
 
-FlowSpeeds update_peaks(Flow& flow, bool steep, bool curved, double time, double footprint_depth, Peaks& peaks) {
+namespace {
+
+/// Speeds of all nodes near material. Calls of_four(k, depth, contact, speed) for four nodes in a row that have some.
+template <class OfFour>
+FlowSpeeds speeds_of(Flow& flow, bool steep, bool curved, double footprint_depth, OfFour&& of_four) {
     FlowSpeeds all;
     for_each_work_run(flow.active, [&](const TileRun& run) {
         Double4 most = {};
@@ -47,22 +51,14 @@ FlowSpeeds update_peaks(Flow& flow, bool steep, bool curved, double time, double
         for_each_four_of_run(flow.grid, run, flow.active_nodes(), [&](Index n, Index k, Index i, Index j) {
             const Double4 h = load(&flow.nodes.depth[k]), none = {};
             if (!any(h > 0.0)) return;
-            if (any((h > footprint_depth) & (load(&peaks.depth[k]) <= footprint_depth)))
-                for (Index m = k; m < k + 4; ++m)
-                    if (flow.nodes.depth[m] > footprint_depth && !(peaks.depth[m] > footprint_depth) &&
-                        !(peaks.arrival[m] > 0.0))  // not buried before by what thinner flows left
-                        peaks.arrival[m] = time;
             Double4 vx, vy;
             unzip(&flow.nodes.before[k], vx, vy);
             const Contact<Double4> c = contact(flow, steep, curved, k, vx, vy);
             const Double4 speed = select(h < 0.1 * footprint_depth, none, c.speed);
-            raise(&peaks.depth[k], h);
-            raise(&peaks.pressure[k], c.pressure);
-            raise(&peaks.speed[k], speed);
             most = max(most, speed);
             const Double4 of_node = flow.share_of_four(i, j) * load(&flow.nodes.mass[k]);
             mass[n] += of_node, motion[n] += of_node * c.speed;
-            raise(&peaks.dynamic_pressure[k], flow.density * speed * speed);
+            of_four(k, h, c, speed);
         });
         for (Index n = 0; n < run.count; ++n)
             if (flow.rest.active[run.tile[n]]) flow.speed_sums[run.tile[n]] = {sum(mass[n]), sum(motion[n])};
@@ -74,6 +70,27 @@ FlowSpeeds update_peaks(Flow& flow, bool steep, bool curved, double time, double
     for (const Index tile : flow.active.work) mass += flow.speed_sums[tile].x, motion += flow.speed_sums[tile].y;
     if (mass > 0.0) all.mean = motion / mass;
     return all;
+}
+
+}  // namespace
+
+FlowSpeeds update_peaks(Flow& flow, bool steep, bool curved, double time, double footprint_depth, Peaks& peaks) {
+    return speeds_of(flow, steep, curved, footprint_depth,
+                     [&](Index k, Double4 h, const Contact<Double4>& c, Double4 speed) {
+                         if (any((h > footprint_depth) & (load(&peaks.depth[k]) <= footprint_depth)))
+                             for (Index m = k; m < k + 4; ++m)
+                                 if (flow.nodes.depth[m] > footprint_depth && !(peaks.depth[m] > footprint_depth) &&
+                                     !(peaks.arrival[m] > 0.0))  // not buried before by what thinner flows left
+                                     peaks.arrival[m] = time;
+                         raise(&peaks.depth[k], h);
+                         raise(&peaks.pressure[k], c.pressure);
+                         raise(&peaks.speed[k], speed);
+                         raise(&peaks.dynamic_pressure[k], flow.density * speed * speed);
+                     });
+}
+
+FlowSpeeds speeds_of_nodes(Flow& flow, bool steep, bool curved, double footprint_depth) {
+    return speeds_of(flow, steep, curved, footprint_depth, [](Index, Double4, const Contact<Double4>&, Double4) {});
 }
 
 }  // namespace frana

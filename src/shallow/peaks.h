@@ -42,4 +42,7 @@ struct FlowSpeeds {
 /// Takes the present depth and velocity into the peaks.
 FlowSpeeds update_peaks(Flow& flow, bool steep, bool curved, double time, double footprint_depth, Peaks& peaks);
 
+/// The same speeds, with all its sums, and no peaks: for states that a run does not go on from.
+FlowSpeeds speeds_of_nodes(Flow& flow, bool steep, bool curved, double footprint_depth);
+
 }  // namespace frana

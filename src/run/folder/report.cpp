@@ -389,7 +389,9 @@ std::string sections(const RunRecord& r) {
             s.name, azimuth, s.volume, s.sediment, s.peak, s.peak_time, s.integral);
     }
     return text +
-           "\nThe volume is counted by the columns that passed and is exact; the discharge is that of the nodes. "
+           "\nThe volume is that of the columns that passed, each with the mass that it had there, and is exact for "
+           "them. Beyond the line some of it may have become bed, or the flow may have taken up more. The discharge is "
+           "that of the nodes. "
            "Sediment is the solid part of the volume: `material.bed.solid_fraction` of it where the bed law has one, "
            "otherwise all.\n\n";
 }
