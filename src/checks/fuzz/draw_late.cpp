@@ -29,6 +29,7 @@ void draw_late(Dice& dice, Draft& draft) {
         draft.keys["release#0.when_hit"] = "true";
     else
         say(draft, "release#0.at", dice.decades(0.1, 30.0) * std::sqrt(cell / 9.81));
+    if (dice.chance(0.3)) draft.keys["release#0.included_in_dem"] = "true";
 }
 
 }  // namespace frana::stress
