@@ -230,7 +230,7 @@ TEST_CASE("What is loose below a release that stands in the bed stays until that
     scene.erodible = ErodibleBed{Raster::filled(scene.bed.geometry, 0.02), 1600.0, erosion::Growth{0.05}};
     DepthAveraged run(scene);
     const Status first = run.status();
-    const Index k = at(run, 55, 22), beside = at(run, 40, 22);
+    const Index k = at(run, 55, 22), upstream = at(run, 40, 22);
     const double z = run.flow().bed.z[k];
     bool passed = false;
     while (run.status().time < 6.0) {
@@ -241,7 +241,7 @@ TEST_CASE("What is loose below a release that stands in the bed stays until that
         CHECK(run.flow().bed.z[k] == z);
     }
     CHECK(passed);
-    CHECK(run.erosion()->eroded_depth(beside) > 0.01);
+    CHECK(run.erosion()->eroded_depth(upstream) > 0.01);
     double worst = 0.0;
     while (run.status().time < 12.0) {
         run.advance(12.0);
