@@ -67,8 +67,9 @@ std::string release_text(const ReleaseSummary& release) {
     text +=
         fmt::format("            volume {:.9g} m3 from raster or polygon, {:.9g} m3 in particles, difference {:.1e}\n",
                     r.volume, r.particle_volume, r.relative_error);
-    if (release.at > 0.0) text += fmt::format("            enters at {:.6g} s\n", release.at);
-    if (release.when_hit) text += "            enters when the flow reaches it\n";
+    const char* cut = release.included_in_dem ? ", and is cut out of the bed then" : "";
+    if (release.at > 0.0) text += fmt::format("            enters at {:.6g} s{}\n", release.at, cut);
+    if (release.when_hit) text += fmt::format("            enters when the flow reaches it{}\n", cut);
     return text + fmt::format("            bed slope {:.1f} to {:.1f} degrees, {:.1f} on average\n",
                               release.slope_min_deg, release.slope_max_deg, release.slope_mean_deg);
 }

@@ -168,3 +168,47 @@ TEST_CASE("A run that is stopped between its late releases goes on with the same
     CHECK(text_of(fs::path(parts) / "history.csv") == text_of(fs::path(straight) / "history.csv"));
     CHECK(record_of(parts)["late_releases"] == record_of(straight)["late_releases"]);
 }
+
+TEST_CASE("A run shows the bed that fell when a release entered that stood in it", "[program][late][scar]") {
+    PlaneCase plane;
+    write_text(plane.folder() / "below.geojson", rectangle_text(70, 30, 90, 70));
+    const auto write = [&](const std::string& more) {
+        write_text(plane.file(), "[terrain]\ndem = \"dem.asc\"\n" +
+                                     release("below.geojson", "included_in_dem = true\n" + more) + "[time]\nend = 4\n" +
+                                     kBed);
+    };
+    write("at = 2.0\n");
+    const Outcome check = plane.frana("check CASE");
+    CHECK(check.code == 0);
+    CHECK_THAT(check.out, Contains("enters at 2 s, and is cut out of the bed then") &&
+                              Contains("release.0: its 1200 m3 are cut out of the bed when it enters"));
+    const Outcome particles = plane.frana("particles CASE --out " + (plane.folder() / "p.csv").string());
+    CAPTURE(particles.out);
+    CHECK_THAT(particles.out, Contains("that enter later are not in it"));
+    const fs::path later = plane.folder() / "later", now = plane.folder() / "now";
+    REQUIRE(plane.frana("run CASE --quiet --out " + later.string()).code == 0);
+    const Json json = record_of(later);
+    CHECK(json["late_releases"][0]["included_in_dem"] == true);
+    CHECK(std::abs(json["budgets"]["mass"]["relative_error"].get<double>()) < 1e-13);
+    CHECK_THAT(text_of(later / "report.md"), Contains("1200 m3 at t = 2 s, cut out of the bed |"));
+    write("");
+    REQUIRE(plane.frana("run CASE --quiet --set time.end=2 --out " + now.string()).code == 0);
+    const Raster at_start = raster_in(later / "rasters" / "elevation.tif"),
+                 at_end = raster_in(later / "rasters" / "final_elevation.tif"),
+                 change = raster_in(later / "rasters" / "bed_change.tif"),
+                 cut = raster_in(now / "rasters" / "elevation.tif"),
+                 depth = raster_in(later / "rasters" / "final_depth.tif"),
+                 expected = raster_in(now / "rasters" / "final_depth.tif");
+    REQUIRE(at_end.values.size() == cut.values.size());
+    double fallen = 0.0, most = 0.0;
+    for (std::size_t k = 0; k < cut.values.size(); ++k) {
+        fallen = std::max(fallen, at_start.values[k] - at_end.values[k]);
+        most = std::max(most, std::abs(at_end.values[k] - cut.values[k]));
+        const double changed = std::isnan(change.values[k]) ? 0.0 : change.values[k];  // where nothing came
+        CHECK(at_start.values[k] + changed == Approx(at_end.values[k]).margin(1e-5));
+        if (!std::isnan(depth.values[k]) || !std::isnan(expected.values[k]))
+            CHECK(depth.values[k] == Approx(expected.values[k]).margin(1e-5));
+    }
+    CHECK(fallen == Approx(1.5).epsilon(1e-6));
+    CHECK(most < 1e-5);  // rasters are float32, of elevations up to 100 m
+}

@@ -90,16 +90,60 @@ TEST_CASE("A flow begins with what lies there at the start, else with what comes
     CHECK(start(inflow + kFirst + "when_hit = true\n").x() == Approx(1150.0));
 }
 
+TEST_CASE("A later release that stands in the elevation model leaves it when it enters", "[scene][late][scar]") {
+    const std::string included = "included_in_dem = true\n";
+    const Scene bare = built(kFirst + kSecond + "at = 7.5\n"), now = built(kFirst + kSecond + included);
+    CHECK(bare.late[0].scar.empty());
+    CHECK_FALSE(bare.bed_changes());
+    for (const char* when : {"at = 7.5\n", "when_hit = true\n"}) {
+        const Scene later = built(kFirst + kSecond + when + included);
+        REQUIRE(later.late.size() == 1);
+        CHECK(later.bed_changes());
+        CHECK(later.bed_evolves());
+        CHECK(later.bed.values == bare.bed.values);  // not yet
+        CHECK(later.late[0].seeds.x == bare.late[0].seeds.x);
+        CHECK(later.log.back() == "release.1: its 600 m3 are cut out of the bed when it enters (included_in_dem)");
+        const GridGeometry& g = later.bed.geometry;
+        Raster cut = later.bed;
+        double volume = 0.0;
+        for (const ScarNode& node : later.late[0].scar) {
+            CHECK(node.depth > 0.0);
+            cut.at(std::lround((node.at.x() - g.x0) / g.cell), std::lround((node.at.y() - g.y0) / g.cell)) -=
+                node.depth;
+            volume += node.depth * g.cell * g.cell;
+        }
+        CHECK(volume == Approx(600.0).epsilon(1e-14));
+        for (std::size_t k = 0; k < cut.values.size(); ++k)
+            CHECK(cut.values[k] == Approx(now.bed.values[k]).epsilon(1e-14));
+    }
+    // Of two, the one that is cut at the start does not stay for later; features of other depths are one release.
+    FakeGis gis = two_outlines();
+    gis.polygons["release.geojson"].parts.push_back(rectangle(1110, 2050, 1120, 2080).parts[0]);
+    gis.attributes["h"] = {2.0, 1.0};
+    const Scene both = build_scene(
+        CaseFile::parse(kHead + "[[release]]\noutline = \"release.geojson\"\ndepth = \"field:h\"\nat = 3\n" + included +
+                            kSecond + included,
+                        "slide/case.toml"),
+        gis);
+    REQUIRE(both.late.size() == 1);
+    double volume = 0.0;
+    for (const ScarNode& node : both.late[0].scar)
+        volume += node.depth * both.bed.geometry.cell * both.bed.geometry.cell;
+    CHECK(volume == Approx(3300.0).epsilon(1e-14));
+    CHECK(both.bed.values == now.bed.values);
+}
+
 TEST_CASE("What a late release cannot be is said in a sentence", "[scene][late]") {
     CHECK(says(kFirst + kSecond + "at = 20\n", "release.1.at: found 20 s; expected a time before time.end = 20 s"));
     CHECK(says(kFirst + kSecond + "at = -1\n", "release.1.at: found -1"));
     CHECK(says(kFirst + kSecond + "at = 2\nwhen_hit = true\n", "release.1.at: found together with when_hit"));
     CHECK(says(kFirst + "when_hit = true\n" + kSecond + "when_hit = true\n",
                "release.0.when_hit: found true for every release, and no [[inflow]]"));
-    CHECK(says(kFirst + kSecond + "at = 2\nincluded_in_dem = true\n",
-               "release.1.included_in_dem: found true together with at above 0"));
-    CHECK(says(kFirst + kSecond + "when_hit = true\nincluded_in_dem = true\n",
-               "release.1.included_in_dem: found true together with when_hit"));
+    const std::string cut = kFirst + kSecond + "at = 2\nincluded_in_dem = true\n";
+    CHECK(says(cut + "[scheme]\nshape = \"cubic\"\n",
+               "release.1.included_in_dem: found true with scheme.shape = \"cubic\""));
+    CHECK(says(cut + "[erodible]\nlaw = \"growth\"\ndepth = 1\ngrowth = 0.01\nbed_evolves = false\n",
+               "release.1.included_in_dem: found true with erodible.bed_evolves = false"));
     const std::string stage = "[[stage]]\nmodel = \"solid_flow\"\n";
     CHECK(says(kFirst + kSecond + "at = 2\n" + stage, "release.1.at: found 2 with a stage"));
     CHECK(says(kFirst + kSecond + "at = 2\n[scheme]\npreset = \"paper\"\n",

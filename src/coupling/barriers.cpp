@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -215,6 +216,24 @@ double firm_up(Raster& depth, const Raster& bed, const BarrierNode& node) {
     return firm;
 }
 
+/// Of releases that stand in the bed, a barrier holds what is below its top.
+void hold_up(std::vector<LateRelease>& late, const Raster& bed, const std::vector<BarrierNode>& nodes) {
+    const GridGeometry& g = bed.geometry;
+    for (LateRelease& release : late) {
+        if (release.scar.empty()) continue;
+        std::map<std::pair<Index, Index>, double> above;  // [m]
+        for (const BarrierNode& node : nodes)
+            above[{node.i, node.j}] = std::max(0.0, bed.at(node.i, node.j) - node.top);
+        for (ScarNode& node : release.scar) {
+            const Index i = std::lround((node.at.x() - g.x0) / g.cell), j = std::lround((node.at.y() - g.y0) / g.cell);
+            const auto left = above.find({i, j});
+            if (left == above.end()) continue;
+            node.depth = std::min(node.depth, left->second);
+            left->second -= node.depth;
+        }
+    }
+}
+
 }  // namespace
 
 Footings stand_in(Scene& scene, const std::vector<BarrierNode>& nodes, Index i0, Index j0) {
@@ -225,6 +244,7 @@ Footings stand_in(Scene& scene, const std::vector<BarrierNode>& nodes, Index i0,
     Footings footings;
     if (scene.erodible)
         for (const BarrierNode& node : here) footings.firm += area * firm_up(scene.erodible->depth, scene.bed, node);
+    if (scene.cuts_later()) hold_up(scene.late, scene.bed, here);
     for (const BarrierNode& node : here) {
         double& z = scene.bed.at(node.i, node.j);
         if (!(node.top > z)) continue;

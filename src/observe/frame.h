@@ -106,6 +106,7 @@ struct LateEntry {
     double volume = 0.0;            ///< [m3]
     std::optional<double> at;       ///< when it was to [s]; nothing: when the flow reaches it
     std::optional<double> entered;  ///< [s]; nothing: it did not yet
+    bool of_bed = false;            ///< it is cut out of the bed when it enters
 };
 
 /// Free water, and that which columns confine.

@@ -207,6 +207,7 @@ private:
         summary.table = i;
         summary.at = case_.number(fmt::format("release.{}.at", i));
         summary.when_hit = case_.flag(fmt::format("release.{}.when_hit", i));
+        summary.included_in_dem = case_.flag(fmt::format("release.{}.included_in_dem", i));
         for (const char* name : {"outline", "mask", "depth", "surface"}) {
             const std::string key = fmt::format("release.{}.{}", i, name);
             if (case_.given(key) && case_.is_text(key)) summary.name += fmt::format(" ({})", case_.word(key));
@@ -258,9 +259,10 @@ private:
         take_out_late();
     }
 
+    static bool is_late(const ReleaseSummary& release) { return release.at > 0.0 || release.when_hit; }
+
     /// Those that enter later are no particles of the start.
     void take_out_late() {
-        const auto is_late = [](const ReleaseSummary& release) { return release.at > 0.0 || release.when_hit; };
         if (std::none_of(built_.releases.begin(), built_.releases.end(), is_late)) return;
         Seeds at_start;
         Index p = 0, table = -1;
@@ -302,11 +304,36 @@ private:
             if (!case_.flag(fmt::format("release.{}.included_in_dem", table))) continue;
             const NodeMarks marks = nodes_under(releases_[i], scene_.bed.geometry);
             for (std::size_t k = 0; k < marks.size(); ++k) scars[k] |= marks[k];
-            const double volume = cut_release(releases_[i], scene_.bed);
-            scene_.log.push_back(
-                fmt::format("release.{}: its {:.6g} m3 are cut out of the bed (included_in_dem)", table, volume));
+            const bool later = is_late(built_.releases[i]);
+            const double volume =
+                later ? cut_later(releases_[i], late_of(table)) : cut_release(releases_[i], scene_.bed);
+            scene_.log.push_back(fmt::format("release.{}: its {:.6g} m3 are cut out of the bed{} (included_in_dem)",
+                                             table, volume, later ? " when it enters" : ""));
         }
         remark_on_loose_scar(scars);
+    }
+
+    /// That of a table: all features' depths are one.
+    LateRelease& late_of(Index table) {
+        std::size_t n = 0;
+        Index last = -1;
+        for (const ReleaseSummary& release : built_.releases) {
+            if (release.table > table) break;
+            if (is_late(release) && release.table != last) last = release.table, ++n;
+        }
+        expect(last == table, "a table that enters later is a late release");
+        return scene_.late.at(n - 1);
+    }
+
+    /// Notes what falls when the release enters. Returns its volume [m3].
+    double cut_later(const Release& release, LateRelease& late) const {
+        const GridGeometry& grid = scene_.bed.geometry;
+        Raster fallen = Raster::filled(grid, 0.0);
+        const double volume = cut_release(release, fallen);
+        for (Index j = 0; j < grid.ny; ++j)
+            for (Index i = 0; i < grid.nx; ++i)
+                if (fallen.at(i, j) != 0.0) late.scar.push_back({Vec2(grid.x(i), grid.y(j)), -fallen.at(i, j)});
+        return volume;
     }
 
     /// Of the part of a terrain that is held what lies farther on is not known.

@@ -12,13 +12,14 @@ namespace frana {
 
 /// One release as it was understood, for `frana check` and reports.
 struct ReleaseSummary {
-    std::string name;            ///< "release.0 (release.geojson)"
-    Index table = 0;             ///< number of its [[release]]
-    ReleaseReport report;        ///< area, volume, particles: particles/generate.h
-    double max_depth = 0.0;      ///< vertical [m]
-    double at = 0.0;             ///< when it enters [s]
-    bool when_hit = false;       ///< it enters when the flow reaches it
-    double slope_min_deg = 0.0;  ///< bed slope at the nodes under the release [degrees]
+    std::string name;              ///< "release.0 (release.geojson)"
+    Index table = 0;               ///< number of its [[release]]
+    ReleaseReport report;          ///< area, volume, particles: particles/generate.h
+    double max_depth = 0.0;        ///< vertical [m]
+    double at = 0.0;               ///< when it enters [s]
+    bool when_hit = false;         ///< it enters when the flow reaches it
+    bool included_in_dem = false;  ///< it is cut out of the bed, at the start or when it enters
+    double slope_min_deg = 0.0;    ///< bed slope at the nodes under the release [degrees]
     double slope_mean_deg = 0.0;
     double slope_max_deg = 0.0;
 };

@@ -204,11 +204,6 @@ void CaseReader::check_release_time(const std::string& prefix) {
         wrong(prefix + "at", fmt::format("found {:.6g} s", at),
               fmt::format("expected a time before time.end = {:.6g} s, or it never enters", case_.number("time.end")),
               "give an earlier time, or run longer");
-    if ((at > 0.0 || when_hit) && there("included_in_dem") && case_.flag(prefix + "included_in_dem"))
-        wrong(prefix + "included_in_dem",
-              fmt::format("found true together with {}", when_hit ? "when_hit" : "at above 0"),
-              "expected false: the bed is cut at the start, and would be a pit until the release enters",
-              "remove it, and give an elevation model without the mass");
 }
 
 /// Releases that wait for a flow need one.

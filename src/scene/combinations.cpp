@@ -27,7 +27,7 @@ bool of_words(Are are) { return are == Are::words || are == Are::others; }
 std::string value_text(const CaseFile& file, const Values& values) {
     if (of_words(values.are)) return "\"" + file.word(values.key) + "\"";
     if (values.are == Are::given && file.is_text(values.key)) return "\"" + file.word(values.key) + "\"";
-    if (values.are == Are::on) return "true";
+    if (values.are == Are::on || values.are == Are::on_later) return "true";
     if (values.are == Are::off) return "false";
     if (values.are == Are::tables) return (values.key[0] == 'i' ? "an " : "a ") + values.key;
     return fmt::format("{:.6g}", file.number(values.key_in(file)));
@@ -41,6 +41,12 @@ std::vector<std::string> keys_of(const CaseFile& file, const std::string& key) {
     std::vector<std::string> keys;
     for (Index i = 0; i < file.count(table); ++i) keys.push_back(fmt::format("{}.{}{}", table, i, key.substr(dot)));
     return keys;
+}
+
+/// Of a key of a release.
+bool enters_later(const CaseFile& file, const std::string& key) {
+    const std::string table = key.substr(0, key.rfind('.') + 1);
+    return file.number(table + "at") > 0.0 || file.flag(table + "when_hit");
 }
 
 bool holds(const CaseFile& file, const Values& values, const std::string& key) {
@@ -60,6 +66,8 @@ bool holds(const CaseFile& file, const Values& values, const std::string& key) {
             return file.number(key) == 0.0;
         case Are::on:
             return file.flag(key);
+        case Are::on_later:
+            return file.flag(key) && enters_later(file, key);
         default:
             return !file.flag(key);
     }
@@ -330,6 +338,20 @@ void add_late_releases(std::vector<Combination>& table) {
     }
 }
 
+/// Releases that stand in the bed until they go.
+void add_late_scars(std::vector<Combination>& table) {
+    const Values scar{"release.included_in_dem", Are::on_later};
+    table.push_back(
+        {scar,
+         {is_not("scheme.shape", {"quadratic"})},
+         "expected false where the release enters later: its bed falls then, with \"quadratic\" shapes only",
+         "remove scheme.shape, or give an elevation model without the mass"});
+    table.push_back({scar,
+                     {{"erodible.bed_evolves", Are::off}},
+                     "expected false where the release enters later: its bed falls then, and this one stays",
+                     "remove erodible.bed_evolves, or give an elevation model without the mass"});
+}
+
 std::string with_text(const Combination& row) {
     std::string text;
     for (const Values& values : row.with) text += (text.empty() ? "" : ", or ") + values.text();
@@ -359,6 +381,8 @@ std::string Values::text() const {
             return key + " = 0";
         case Are::on:
             return key + " = true";
+        case Are::on_later:
+            return key + " = true where it enters later";
         case Are::off:
             return key + " = false";
         case Are::given:
@@ -403,6 +427,7 @@ const std::vector<Combination>& combinations() {
         add_forest(table);
         add_space(table);
         add_late_releases(table);
+        add_late_scars(table);
         table.push_back({is_not("output.film", {"none"}),
                          {{"output.formats", Are::without, {"vtk"}}},
                          "expected the frames that a film is made of",

@@ -10,7 +10,8 @@ namespace frana {
 
 /// Some of the values that a key can have, or tables of a name that are there at all.
 struct Values {
-    enum class Are { words, others, without, above_zero, zero, on, off, tables, given };
+    /// on_later: true, of a release that enters later.
+    enum class Are { words, others, without, above_zero, zero, on, off, on_later, tables, given };
     std::string key;  ///< of tables their name; "release.at" is that of any [[release]]
     Are are = Are::words;
     std::vector<std::string> words = {};  ///< those, all others, or (without) what a list of words lacks

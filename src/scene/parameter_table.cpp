@@ -81,8 +81,9 @@ void add_release(Table& table) {
     velocity.length = 2;
     velocity.fallback = std::vector<double>{0.0, 0.0};
     table.push_back(velocity);
-    table.push_back(flag("release.included_in_dem", false,
-                         "the mass still stands in the elevation model and is cut out of the bed"));
+    table.push_back(
+        flag("release.included_in_dem", false,
+             "the mass still stands in the elevation model, and is cut out of the bed when the release enters"));
     table.push_back(number("release.at", "s", not_negative, 0.0, "when the release enters the run"));
     table.push_back(flag("release.when_hit", false,
                          "the release enters in the step in which a node that it covers is first deeper than "

@@ -122,12 +122,20 @@ struct Inflow {
     }
 };
 
+/// A node of the bed with the mass of a release that still stands in it.
+struct ScarNode {
+    Vec2 at;       ///< on the map
+    double depth;  ///< along gravity [m]
+};
+
 /// A release that enters the run later.
 struct LateRelease {
     std::string name;
     std::optional<double> at;  ///< [s]; nothing: when the flow first covers one of its nodes
     Seeds seeds;
     Index first_id = 0;  ///< of its particles, which are numbered on from there
+    std::vector<ScarNode> scar =
+        {};  ///< what is cut out of the bed when it enters; empty: it does not stand in the bed
 
     double volume() const {
         double sum = 0.0;
@@ -338,10 +346,16 @@ struct Scene {
     const rheology::LawMap* rheologies() const { return friction ? nodes_of(friction->rheologies) : nullptr; }
     const WaterLawMap* water_laws() const { return friction ? nodes_of(friction->water) : nullptr; }
 
-    /// Flow takes up bed, or becomes bed.
-    bool bed_changes() const { return erodible || deposition || forest; }
+    /// Flow takes up bed, or becomes bed, or a release is cut out of it during the run.
+    bool bed_changes() const { return erodible || deposition || forest || cuts_later(); }
     /// The ground follows what is taken or left behind.
-    bool bed_evolves() const { return deposition || forest || (erodible && erodible->evolves); }
+    bool bed_evolves() const { return deposition || forest || cuts_later() || (erodible && erodible->evolves); }
+    /// A later release still stands in the bed.
+    bool cuts_later() const {
+        for (const LateRelease& release : late)
+            if (!release.scar.empty()) return true;
+        return false;
+    }
     /// Material at the start, and that of each late release.
     std::vector<const Seeds*> all_particles() const {
         std::vector<const Seeds*> all = {&particles};

@@ -53,10 +53,11 @@ std::vector<double> filled(const Raster& bed) {
     return z;
 }
 
-/// Index into 0..n-1 and the sign and offset of the extension beyond. It is mirrored at walls, odd about the end value
-/// (linear for a plane) at open sides.
-double extended(const std::vector<double>& z, Index nx, Index ny, Index i, Index j, bool wall) {
-    if (i >= 0 && i < nx && j >= 0 && j < ny) return z[j * nx + i];
+/// Index into 0..n-1 and the sign and offset of the extension beyond of the values z(i, j). It is mirrored at walls, odd
+/// about the end value (linear for a plane) at open sides.
+template <class Values>
+double extended_by(const Values& z, Index nx, Index ny, Index i, Index j, bool wall) {
+    if (i >= 0 && i < nx && j >= 0 && j < ny) return z(i, j);
     const auto inside = [](Index k, Index n) { return std::clamp<Index>(k, 0, n - 1); };
     const auto mirror = [](Index k, Index n) {
         if (n == 1) return Index{0};
@@ -65,9 +66,13 @@ double extended(const std::vector<double>& z, Index nx, Index ny, Index i, Index
         return k < n ? k : period - k;
     };
     const Index im = mirror(i, nx), jm = mirror(j, ny);
-    if (wall) return z[jm * nx + im];
+    if (wall) return z(im, jm);
     const Index ic = inside(i, nx), jc = inside(j, ny);
-    return 2.0 * z[jc * nx + ic] - z[inside(2 * jc - j, ny) * nx + inside(2 * ic - i, nx)];
+    return 2.0 * z(ic, jc) - z(inside(2 * ic - i, nx), inside(2 * jc - j, ny));
+}
+
+double extended(const std::vector<double>& z, Index nx, Index ny, Index i, Index j, bool wall) {
+    return extended_by([&](Index a, Index b) { return z[b * nx + a]; }, nx, ny, i, j, wall);
 }
 
 /// The same up to kTile nodes beyond the domain on every side, whatever the tiles. Filters that run often carry in what
@@ -273,6 +278,81 @@ void refresh_path(const TileGrid& grid, BedGeometry& bed, Index tile) {
             bed.hxx[k] = h.xx, bed.hxy[k] = h.xy, bed.hyy[k] = h.yy;
         }
     });
+}
+
+namespace {
+
+/// Depths on the nodes of a box, none elsewhere.
+struct Depths {
+    NodeBox box;
+    std::vector<double> values;
+
+    Depths(const std::vector<ScarNode>& nodes, const GridGeometry& g) {
+        const auto place = [&](const ScarNode& node) {
+            return std::array<Index, 2>{std::lround((node.at.x() - g.x0) / g.cell),
+                                        std::lround((node.at.y() - g.y0) / g.cell)};
+        };
+        auto low = place(nodes.front()), high = low;
+        for (const ScarNode& node : nodes)
+            for (std::size_t n = 0; n < 2; ++n)
+                low[n] = std::min(low[n], place(node)[n]), high[n] = std::max(high[n], place(node)[n]);
+        box = {low[0], low[1], high[0] - low[0] + 1, high[1] - low[1] + 1};
+        values.assign(static_cast<std::size_t>(box.nx * box.ny), 0.0);
+        for (const ScarNode& node : nodes) {
+            const auto [i, j] = place(node);
+            values[static_cast<std::size_t>((j - box.j0) * box.nx + i - box.i0)] += node.depth;
+        }
+    }
+    bool has(Index i, Index j) const {
+        return i >= box.i0 && j >= box.j0 && i < box.i0 + box.nx && j < box.j0 + box.ny;
+    }
+    double operator()(Index i, Index j) const {
+        return has(i, j) ? values[static_cast<std::size_t>((j - box.j0) * box.nx + i - box.i0)] : 0.0;
+    }
+};
+
+/// Nodes of one direction, first and past the last, that feel what nodes `first` to `past` have. All beyond a side do
+/// where the extension beyond it may.
+std::array<Index, 2> felt(Index first, Index past, Index n, Index storage_end) {
+    constexpr Index kReach = 2;  // of averaging
+    const bool low = first - kReach <= kTile, high = past + kReach >= n - kTile;
+    return {low ? -kTile : first - kReach, high ? storage_end : past + kReach};
+}
+
+/// As smooth() has it, along x and then y, around a node.
+template <class Values>
+double averaged(const Values& values, const std::array<double, 3>& w, Index i, Index j) {
+    const auto row = [&](Index b) {
+        return w[0] * values(i, b) + w[1] * (values(i - 1, b) + values(i + 1, b)) +
+               w[2] * (values(i - 2, b) + values(i + 2, b));
+    };
+    return w[0] * row(j) + w[1] * (row(j - 1) + row(j + 1)) + w[2] * (row(j - 2) + row(j + 2));
+}
+
+}  // namespace
+
+std::vector<NodeFall> falls_of(const std::vector<ScarNode>& cut, const TileGrid& grid, const BedGeometry& bed,
+                               bool walls) {
+    std::vector<NodeFall> falls;
+    if (cut.empty()) return falls;
+    const Depths depths(cut, grid.geometry());
+    const Index nx = grid.nx(), ny = grid.ny();
+    const Window window{grid};
+    const auto by_sides = [&](Index i, Index j) { return extended_by(depths, nx, ny, i, j, walls); };
+    const auto linear = [&](Index i, Index j) { return extended_by(depths, nx, ny, i, j, false); };
+    const auto [i0, i1] = felt(depths.box.i0, depths.box.i0 + depths.box.nx, nx, window.i1());
+    const auto [j0, j1] = felt(depths.box.j0, depths.box.j0 + depths.box.ny, ny, window.j1());
+    for (Index j = j0; j < j1; ++j)
+        for (Index i = i0; i < i1; ++i) {
+            const NodeFall fall{grid.at(i, j),
+                                i,
+                                j,
+                                by_sides(i, j),
+                                averaged(by_sides, bed.averaging, i, j),
+                                averaged(linear, bed.averaging, i, j)};
+            if (fall.ground != 0.0 || fall.z != 0.0 || fall.path != 0.0) falls.push_back(fall);
+        }
+    return falls;
 }
 
 BedGeometry level_bed(const TileGrid& grid) {

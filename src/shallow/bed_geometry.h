@@ -49,6 +49,15 @@ void refresh_slopes(const TileGrid& grid, BedGeometry& bed, Index tile, const Ti
 /// Slopes and curvature of the smoothed bed of a tile's nodes anew, from up to two nodes around. bed.smoothed is there.
 void refresh_path(const TileGrid& grid, BedGeometry& bed, Index tile);
 
+/// By how much a node falls when something is cut out of the ground.
+struct NodeFall {
+    Index k, i, j;           ///< its storage index, and its place
+    double ground, z, path;  ///< of the numbers of BedGeometry; path: of `smoothed`, before that is smoothed [m]
+};
+/// All nodes that fall when so much is cut out of the ground, those beyond the sides too; row after row from the south.
+std::vector<NodeFall> falls_of(const std::vector<ScarNode>& cut, const TileGrid& grid, const BedGeometry& bed,
+                               bool walls);
+
 /// A level bed at zero, without curvature.
 BedGeometry level_bed(const TileGrid& grid);
 

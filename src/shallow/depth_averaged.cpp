@@ -165,7 +165,7 @@ void DepthAveraged::advance(double until) {
     const bool rows = feed_ && feed_->due(status_.after(dt, until));
     // Rows wait until points are sorted anyway. A sort of its own for each would cost a fifth of a step.
     const bool adapts = due || drift_ > drift_before_carry(flow_.scheme) || (rows && flow_.columns.count() == 0);
-    const bool fed = rows && adapts, apart = adapts || erosion_;
+    const bool fed = rows && adapts, exchanges = erosion_ && erosion_->exchanges(), apart = adapts || exchanges;
     if (passages_) timed_("sections", [&] { passages_->note(flow_); });
     PointSums points =
         apart ? timed_("gather", [&] { return transfer_->gather(flow_, dt); })
@@ -176,9 +176,9 @@ void DepthAveraged::advance(double until) {
     status_.tick(dt, until);
     // Dropped, not sorted: nodes have been cleared for the present tiles, and stay so until the next deposit.
     if (points.left_count > 0) timed_("sort", [&] { sorter_.drop(flow_.columns, transfer_->gone(), flow_.active); });
-    if (erosion_) timed_("erosion", [&] { settle(); });
+    if (exchanges) timed_("erosion", [&] { settle(); });
     if (adapts) adapt_points(due, fed);
-    if (erosion_) timed_("erosion", [&] { erode(dt), detrain(dt); });
+    if (exchanges) timed_("erosion", [&] { erode(dt), detrain(dt); });
     if (apart) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_velocity_dt); });
     arrive(points);
     if (late_) enter_late();

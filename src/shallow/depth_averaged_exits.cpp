@@ -175,12 +175,14 @@ double DepthAveraged::place_late(const LateRelease& release, PointSums& came) {
 }
 
 /// All that moves is brought to the present. So the next step is as at a start for all of it. Potential energy comes in
-/// as the nodes count it.
+/// as the nodes count it, with what a flow on a falling bed loses: the release lifts it as far again.
 void DepthAveraged::take_late(const std::vector<const LateRelease*>& releases) {
     if (flow_.columns.count() > 0) catch_up();
     status_.dt = 0.0, since_split_ = 0.0;
     wake_all(flow_);
     const double potential = status_.potential, signal = signal_;
+    for (const LateRelease* release : releases)
+        if (!release->scar.empty()) timed_("erosion", [&] { erosion_->cut(flow_, release->scar); });
     PointSums came;
     double kinetic = 0.0;
     flow_.columns.with_real([&](auto real) {

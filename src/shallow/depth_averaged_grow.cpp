@@ -48,6 +48,7 @@ void DepthAveraged::take_over(DepthAveraged& from, Index east, Index north) {
     signal_ = from.signal_, since_split_ = from.since_split_, stress_power_ = from.stress_power_;
     centre_ = from.centre_ + Vec2(static_cast<double>(east), static_cast<double>(north));
     if (erosion_) {
+        if (late_) late_->for_each_entered([&](const LateRelease& release) { erosion_->cut(flow_, release.scar); });
         erosion_->take_over(*from.erosion_, from.flow_, flow_, east, north);
         status_.bed = erosion_->status();
     }

@@ -152,6 +152,7 @@ Erosion::Erosion(const Scene& scene, const ErodibleBed& bed, Flow& flow)
             }
     prepare_deposition(scene, flow);
     prepare_forest(scene, flow);
+    prepare_scars(scene, flow);
     for (Index tile = 0; tile < grid.tiles(); ++tile) {
         bool any = false;
         for_each_node_of(grid, tile, [&](Index k, Index, Index) {
@@ -211,10 +212,15 @@ Real Erosion::there_is(Index k) const {
     return select(lies > none, old + (lies - fresh_crumb_), old);
 }
 
-/// The same in this step: where something has just come to rest, nothing is taken.
+/// The same in this step: where something has just come to rest, nothing is taken. Under a release that still stands
+/// there, only what was left on top of it is.
 template <class Real>
 Real Erosion::can_give(Index k) const {
-    const Real all = there_is<Real>(k), none = {};
+    Real all = there_is<Real>(k), none = {};
+    if (buried_) {
+        const Real on_top = deposits_ ? read<Real>(&fresh_[k]) - fresh_crumb_ : none;
+        all = select(read<Real>(&buried_[k]) > none, on_top, all);
+    }
     if (raised_tiles_.empty() || !raised_) return all;
     return select(read<Real>(&raised_[k]) > none, none, all);
 }

@@ -1,6 +1,6 @@
 #pragma once
 // The flow takes up loose material of its bed, and leaves some behind (THEORY.md, sections 18, 20, 21). Here are the
-// ledger of mass per node, and the exchange of a step.
+// ledger of mass per node, and the exchange of a step. Later releases are cut out of the bed (section 17).
 //
 // Points have the demand, nodes the supply. So a point gets the share of its demand that the poorest of its nodes can
 // give to all demands. What nodes have left over goes to the points with unmet demand. Where the supply lasts, each
@@ -31,7 +31,7 @@ struct ExchangeSums {
 /// node lies beyond, as with the flow's own mass.
 class Erosion {
 public:
-    /// Of a scene whose bed is erodible, or rock on which material is left behind.
+    /// Of a scene whose bed is erodible, or rock on which material is left behind, or out of which releases are cut.
     Erosion(const Scene& scene, Flow& flow);
 
     /// Points gain, the bed loses, in a step of `dt` [s]; after the gather and the sort, before the deposit.
@@ -45,14 +45,21 @@ public:
     /// below zero. Where any_gone(), the caller drops the points marked in gone().
     ExchangeSums detrain(Flow& flow, double dt);
     bool any_gone() const { return any_gone_; }
+    /// A release that stands in the bed goes: the bed falls, and its slopes and curvature follow at once. What is loose
+    /// below it can be taken from now on. The caller wakes what sleeps.
+    void cut(Flow& flow, const std::vector<ScarNode>& scar);
+    /// Points can gain from the bed, or become bed; otherwise releases are cut out of it, and no more.
+    bool exchanges() const { return takes_ || deposits_; }
     /// The bed's numbers of a status.
     Status::Bed status() const;
 
     double eroded_depth(Index k) const { return (initial_[k] - left_[k]) * per_area_; }  ///< along gravity [m]
     double deposited_depth(Index k) const { return fresh(k) * per_area_of_flow_; }       ///< that lies there now [m]
-    double bed_change(Index k) const { return deposited_depth(k) - eroded_depth(k); }    ///< [m]
-    double left(Index k) const { return left_[k]; }                                      ///< of the original bed [kg]
-    double fresh(Index k) const { return deposits_ ? fresh_[k] : 0.0; }                  ///< deposit on top of it [kg]
+    double bed_change(Index k) const {                                                   ///< [m]
+        return deposited_depth(k) - eroded_depth(k) - (cut_ ? cut_[k] : 0.0);
+    }
+    double left(Index k) const { return left_[k]; }                      ///< of the original bed [kg]
+    double fresh(Index k) const { return deposits_ ? fresh_[k] : 0.0; }  ///< deposit on top of it [kg]
     bool evolves() const { return evolves_; }
     bool deposits() const { return deposits_; }
     /// Something there is no more as the scene has it.
@@ -97,6 +104,7 @@ private:
     template <class Real>
     bool lies_on_rest(const Flow& flow, Index p) const;
     void prepare_forest(const Scene& scene, const Flow& flow);
+    void prepare_scars(const Scene& scene, const Flow& flow);
     bool choose_wooded(const Flow& flow);
     template <class Real>
     void lose(Flow& flow, Index n, double dt);
@@ -162,6 +170,9 @@ private:
     LazyArray<double> raised_;         ///< 1: has got a deposit in this step, and gives nothing; else 0
     std::vector<Index> raised_tiles_;  ///< that have such nodes, some twice
     std::vector<std::uint8_t> gone_;   ///< points that have become bed
+
+    LazyArray<double> cut_;     ///< depth of releases that were cut out; no array where none ever are [m]
+    LazyArray<double> buried_;  ///< so many releases still stand on the node: what is loose below is not taken
 
     Detrainment forest_;
     LazyArray<double> trees_;           ///< K of the nodes; no array without a forest [Pa]

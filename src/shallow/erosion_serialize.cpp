@@ -58,6 +58,8 @@ void Erosion::serialize(Archive& archive, Flow& flow, const std::vector<Index>& 
     std::vector<std::uint8_t> bent(tiles.size(), 0);  // its smoothed bed is not what it was
     numbers("left", left_, as_it_was);
     numbers("fresh", fresh_, as_it_was);
+    numbers("cut", cut_, as_it_was);
+    numbers("buried", buried_, as_it_was);
     if (evolves_) {
         numbers("z", flow.bed.z,
                 [&](std::size_t n, Index i, Index j) { moved_[tiles[n]].add(one_node(flow.grid, tiles[n], i, j)); });
@@ -70,7 +72,7 @@ void Erosion::serialize(Archive& archive, Flow& flow, const std::vector<Index>& 
     if (deposits_) serialize_deposition(archive, flow);
     if (!archive.loading()) return;
     for (const Index tile : tiles) {
-        if (deposits_) list_ledger(tile);
+        if (deposits_ || cut_) list_ledger(tile);
         changed_[tile] = 1;
         count_tile(flow, tile);
         if (bent_path_) tile_pending_[tile] = most_pending(flow, tile);

@@ -85,7 +85,7 @@ double LateReleases::entered_volume() const {
 std::vector<LateEntry> LateReleases::entries() const {
     std::vector<LateEntry> all;
     for (const Entry& entry : entries_) {
-        all.push_back({entry.release.name, entry.release.volume(), entry.release.at, {}});
+        all.push_back({entry.release.name, entry.release.volume(), entry.release.at, {}, !entry.release.scar.empty()});
         if (entry.entered != kNotYet) all.back().entered = entry.entered;
     }
     return all;

@@ -31,6 +31,13 @@ public:
         return entering_;
     }
 
+    /// Calls body(release) for those that have entered, in the order of the case.
+    template <class Body>
+    void for_each_entered(Body&& body) const {
+        for (const Entry& entry : entries_)
+            if (entry.entered != kNotYet) body(entry.release);
+    }
+
     /// The first number that none of their particles has, and none below `id`.
     Index next_id(Index id) const;
     /// How many particles of one of them a half-cell square holds at most.

@@ -29,6 +29,10 @@ void draw_late(Dice& dice, Draft& draft) {
         draft.keys["release#0.when_hit"] = "true";
     else
         say(draft, "release#0.at", dice.decades(0.1, 30.0) * std::sqrt(cell / 9.81));
+    const auto is = [&](const char* key, const char* value) { return draft.has(key) && draft.keys.at(key) == value; };
+    const bool bed_falls =
+        (!draft.has("scheme.shape") || is("scheme.shape", "\"quadratic\"")) && !is("erodible.bed_evolves", "false");
+    if (dice.chance(0.5) && bed_falls) draft.keys["release#0.included_in_dem"] = "true";
 }
 
 }  // namespace frana::stress

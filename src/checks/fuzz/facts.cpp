@@ -179,6 +179,21 @@ void learn_erodible(const ErodibleBed& bed, const Flow& flow, Facts& facts) {
     facts.stretch = std::hypot(1.0, facts.steepest);
 }
 
+/// A bed that falls where a release goes becomes as steep as its edge.
+void learn_scars(const Scene& scene, const Flow& flow, Facts& facts) {
+    if (!scene.cuts_later()) return;
+    facts.energy_law = false;
+    double deepest = 0.0;  // where all of them lie on one another
+    for (const LateRelease& release : scene.late) {
+        double depth = 0.0;
+        for (const ScarNode& node : release.scar) depth = std::max(depth, node.depth);
+        deepest += depth;
+    }
+    if (!facts.steep) return;
+    facts.steepest += 2.0 * deepest / flow.cell;
+    facts.stretch = std::hypot(1.0, facts.steepest);
+}
+
 /// A bed that rises may become as steep as a deposit's own margin, and later flow falls from it.
 void learn_deposition(const Flow& flow, Facts& facts) {
     facts.erodes = true;
@@ -193,6 +208,7 @@ void learn_columns(const Scene& scene, const Flow& flow, Facts& facts) {
     if (scene.erodible) learn_erodible(*scene.erodible, flow, facts);
     learn_inflows(scene, facts);
     learn_late(scene, facts);
+    learn_scars(scene, flow, facts);
     if (scene.deposition || scene.forest) learn_deposition(flow, facts);
     if (scene.still_surface) {
         facts.lake = true;

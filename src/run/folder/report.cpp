@@ -79,8 +79,8 @@ std::string inflow_text(const InflowBudget& inflow) {
 /// "300 m3 at t = 12.4 s, when the flow reached it".
 std::string late_text(const LateEntry& late) {
     if (late.entered)
-        return fmt::format("{:.6g} m3 at t = {:.6g} s{}", late.volume, *late.entered,
-                           late.at ? "" : ", when the flow reached it");
+        return fmt::format("{:.6g} m3 at t = {:.6g} s{}{}", late.volume, *late.entered,
+                           late.at ? "" : ", when the flow reached it", late.of_bed ? ", cut out of the bed" : "");
     return late.at ? fmt::format("{:.6g} m3 did not: the run ended before t = {:.6g} s", late.volume, *late.at)
                    : fmt::format("{:.6g} m3 did not: the flow did not reach it", late.volume);
 }

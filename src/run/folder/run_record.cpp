@@ -281,6 +281,7 @@ Json late_json(const std::vector<LateEntry>& entries) {
         list.push_back({{"name", late.name},
                         {"volume", late.volume},
                         {"when_hit", !late.at},
+                        {"included_in_dem", late.of_bed},
                         {"at", late.at ? Json(*late.at) : Json(nullptr)},
                         {"entered", late.entered ? Json(*late.entered) : Json(nullptr)}});
     return list;
