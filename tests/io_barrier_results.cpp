@@ -191,6 +191,25 @@ TEST_CASE("A row of houses mirrored about the flow's axis is met alike, side by 
     CHECK(of(0, "depth_north_m") > of(0, "depth_south_m"));  // the flow's axis lies to the north of the southern house
 }
 
+// A wall with its face on an edge of pixels raises the nodes beyond. The flow stands on those before them.
+TEST_CASE("Depth at a wall does not depend on whether its face lies on an edge of pixels", "[barriers][results]") {
+    const Village village;
+    const auto at_wall = [&](double x) {
+        write_text(village.path() / "houses.geojson", collection(square(x, -5, 110, "")));
+        REQUIRE(
+            call_frana(village.path(), "run case.toml --out run --quiet --overwrite --set barrier.0.height=60").code ==
+            0);
+        const Layer layer(village.path() / "run" / "results.gpkg", "barriers");
+        const OGRFeatureUniquePtr wall(layer.get().GetNextFeature());
+        return std::pair(wall->GetFieldAsDouble("depth_west_m"), wall->GetFieldAsDouble("dynamic_pressure_west_Pa"));
+    };
+    const auto [on_edge, pressure_on_edge] = at_wall(75.0);  // pixels are 5 m wide
+    const auto [off_edge, pressure_off_edge] = at_wall(75.5);
+    // Both raise the same nodes before the flow, from 77.5 m on, and the first those at 72.5 m too: a cell nearer.
+    CHECK(on_edge > 0.5 * off_edge);
+    CHECK(pressure_on_edge > 0.5 * pressure_off_edge);
+}
+
 TEST_CASE("A height that a feature lacks is refused with its name", "[barriers]") {
     const Village village;
     write_text(village.path() / "houses.geojson",

@@ -14,6 +14,7 @@
 #include "coupling/solid_scene.h"
 #include "particles/bed_points.h"
 #include "solid3d/face_ledger.h"
+#include "terrain/outline_nodes.h"
 #include "terrain/part_of.h"
 
 namespace frana {
@@ -76,15 +77,6 @@ NodeBox nodes_around(const std::pair<Vec3, Vec3>& box, const GridGeometry& g) {
     return common(widened(cells_of({low.head<2>(), high.head<2>()}, g), 1), NodeBox::all(g));
 }
 
-/// Whether a node stands in a barrier, or within half a cell of it.
-bool is_in_reach(const Surface& barrier, const Vec2& node, double top, double cell) {
-    if (barrier.shape) return true;  // top_near() has checked there
-    const Vec3 below(node.x(), node.y(), top - 2.0 * cell);
-    Contact contact[kMostContacts];
-    return barrier.prism->inside(below) ||
-           (barrier.prism->contacts(below, cell, contact) > 0 && contact[0].distance <= 0.5 * cell);
-}
-
 /// Cells that make a wall along a line as thick for columns as points will meet it. So none of them starts inside.
 /// Where there are no points, and no thickness is given, it is a cell thick (least_wall_thickness() is three of them).
 double cell_for_columns(const Barrier& barrier, const Scene& scene) {
@@ -92,9 +84,8 @@ double cell_for_columns(const Barrier& barrier, const Scene& scene) {
     return barrier.thickness ? 0.0 : scene.bed.geometry.cell / 3.0;
 }
 
-/// Top of a barrier at a node; of a shape the highest within half a cell.
+/// The highest top of a shape within half a cell of a node.
 double top_near(const Surface& barrier, const Vec2& node, double cell) {
-    if (barrier.prism) return barrier.prism->top_at(node);
     double top = -std::numeric_limits<double>::infinity();
     const int steps = static_cast<int>(std::ceil(0.5 * cell / barrier.shape->spacing));
     for (int j = -steps; j <= steps; ++j)
@@ -169,22 +160,47 @@ Surface surface_around(const Barrier& barrier, const Scene& scene) {
     return surface_of(barrier, near.nx > 1 && near.ny > 1 ? part_of(scene.bed, near) : scene.bed, cell);
 }
 
+namespace {
+
+std::vector<BarrierNode> nodes_of_shape(const Surface& shape, const GridGeometry& g) {
+    std::vector<BarrierNode> nodes;
+    const auto box = box_around(shape);
+    const NodeBox near = nodes_around(box, g);
+    for (Index j = near.j0; j < near.j0 + near.ny; ++j)
+        for (Index i = near.i0; i < near.i0 + near.nx; ++i) {
+            const Vec2 node(g.x(i), g.y(j));
+            if (!near_box(box, node, 0.5 * g.cell)) continue;
+            const double top = top_near(shape, node, g.cell);
+            if (std::isfinite(top)) nodes.push_back({i, j, top});
+        }
+    return nodes;
+}
+
+/// Those of one barrier, row after row, whether there is ground or not.
+std::vector<BarrierNode> nodes_of(const Barrier& barrier, const Surface& solid, const Scene& scene) {
+    const GridGeometry& g = scene.bed.geometry;
+    if (barrier.shape) return nodes_of_shape(solid, g);
+    const NodeBox near = nodes_around(box_around(solid), g);
+    if (near.nx < 1 || near.ny < 1) return {};
+    const std::vector<char> raised = nodes_of_outline(plan_of(barrier, cell_for_columns(barrier, scene)), near.of(g));
+    std::vector<BarrierNode> nodes;
+    for (Index j = 0; j < near.ny; ++j)
+        for (Index i = 0; i < near.nx; ++i) {
+            if (!raised[static_cast<std::size_t>(j * near.nx + i)]) continue;
+            const Index a = near.i0 + i, b = near.j0 + j;
+            const double top = solid.prism->top_at({g.x(a), g.y(b)});
+            if (std::isfinite(top)) nodes.push_back({a, b, top});
+        }
+    return nodes;
+}
+
+}  // namespace
+
 std::vector<BarrierNode> barrier_nodes(const Scene& scene) {
     std::vector<BarrierNode> nodes;
-    const GridGeometry& g = scene.bed.geometry;
-    for (const Barrier& barrier : scene.barriers) {
-        const Surface solid = surface_around(barrier, scene);
-        const auto box = box_around(solid);
-        const NodeBox near = nodes_around(box, g);
-        for (Index j = near.j0; j < near.j0 + near.ny; ++j)
-            for (Index i = near.i0; i < near.i0 + near.nx; ++i) {
-                const Vec2 node(g.x(i), g.y(j));
-                if (!near_box(box, node, 0.5 * g.cell)) continue;
-                if (std::isnan(scene.bed.at(i, j))) continue;  // no ground to stand on
-                const double top = top_near(solid, node, g.cell);
-                if (std::isfinite(top) && is_in_reach(solid, node, top, g.cell)) nodes.push_back({i, j, top});
-            }
-    }
+    for (const Barrier& barrier : scene.barriers)
+        for (const BarrierNode& node : nodes_of(barrier, surface_around(barrier, scene), scene))
+            if (!std::isnan(scene.bed.at(node.i, node.j))) nodes.push_back(node);  // else no ground to stand on
     const auto row_after_row = [](const BarrierNode& a, const BarrierNode& b) {
         return std::tuple(a.j, a.i, -a.top) < std::tuple(b.j, b.i, -b.top);
     };
@@ -292,14 +308,17 @@ BarrierTiles::BarrierTiles(const GridGeometry& grid, const std::vector<std::pair
     for (std::size_t k = 1; k < begin_.size(); ++k) begin_[k] += begin_[k - 1];
 }
 
-ColumnWatch::ColumnWatch(const Scene& scene) : cell_(scene.bed.geometry.cell) {
+ColumnWatch::ColumnWatch(const Scene& scene) : grid_(scene.bed.geometry), cell_(grid_.cell) {
     for (const Barrier& barrier : scene.barriers) {
         surfaces_.push_back(surface_around(barrier, scene));
         boxes_.push_back(box_around(surfaces_.back()));
         BarrierLoad load;
         load.about = middle_of(surfaces_.back(), scene.bed);
         loads_.barriers.push_back(load);
+        for (const BarrierNode& node : nodes_of(barrier, surfaces_.back(), scene))
+            raised_.push_back(node.j * grid_.nx + node.i);
     }
+    std::sort(raised_.begin(), raised_.end());
     tiles_ = BarrierTiles(scene.bed.geometry, boxes_, kClose * cell_);
     for (const Seeds* seeds : scene.all_particles())
         for (std::size_t p = 0; p < seeds->x.size(); ++p)
@@ -367,12 +386,10 @@ void ColumnWatch::sample_at(std::size_t n, const ColumnAt& column, const Vec2* f
 }
 
 bool ColumnWatch::is_raised(const Vec2& node) const {
-    const auto [first, end] = tiles_.barriers_at(node);
-    return std::any_of(first, end, [&](Index n) {
-        const Surface& surface = surfaces_[static_cast<std::size_t>(n)];
-        const double top = top_near(surface, node, cell_);
-        return std::isfinite(top) && is_in_reach(surface, node, top, cell_);
-    });
+    const Index i = std::lround((node.x() - grid_.x0) / grid_.cell),
+                j = std::lround((node.y() - grid_.y0) / grid_.cell);
+    if (i < 0 || j < 0 || i >= grid_.nx || j >= grid_.ny) return false;
+    return std::binary_search(raised_.begin(), raised_.end(), j * grid_.nx + i);
 }
 
 double ColumnWatch::adjacent_surface(const DepthAveraged& columns, const Vec2& place) const {

@@ -18,7 +18,7 @@ namespace frana {
 /// are separate. Throws UserError for an outline without area or a line that turns too sharply.
 Prism solid_of(const Barrier& barrier, const Raster& bed, double cell);
 
-/// A node within a barrier, or within half a cell of it.
+/// A node within a barrier, or within half a cell of it (nodes_of_outline()).
 struct BarrierNode {
     Index i, j;
     double top;  ///< of the highest barrier there [m]
@@ -132,6 +132,8 @@ private:
     std::map<Index, std::vector<Index>> over_;  ///< barriers that a column has been over, by its number; few have
     std::vector<double> last_;                  ///< x and y of each column's place in that round, by its number [m]
     BarrierLoads loads_;
+    GridGeometry grid_;          ///< that barriers were found on; that of the columns may have grown
+    std::vector<Index> raised_;  ///< nodes of it that barriers raise, ascending
     double cell_;
     double placed_ = 0.0;  ///< of releases, on top of barriers [m3]
     double moved_ = 0.0;   ///< farthest way of a column since the last round [m]

@@ -88,6 +88,7 @@ public:
         remark_buried(barrier);
         barrier.windows = windows();
         remark_thin(barrier.outline);
+        remark_thin_wall(barrier);
         if (!case_.flag(prefix_ + "each")) return scene_.barriers.push_back(std::move(barrier));
         add_each(barrier);
     }
@@ -160,14 +161,26 @@ private:
     /// Columns see no face thinner than two cells: nodes within half a cell of a polygon stand on it.
     void remark_thin(const Polygons& outline) const {
         const double cell = scene_.bed.geometry.cell;
+        double thinnest = INFINITY;
         const auto thin = std::count_if(outline.parts.begin(), outline.parts.end(), [&](const Polygon& polygon) {
-            return !polygon.rings.empty() && width_of(polygon.rings.front()) < 2.0 * cell;
+            const double width = polygon.rings.empty() ? INFINITY : width_of(polygon.rings.front());
+            thinnest = std::min(thinnest, width);
+            return width < 2.0 * cell;
         });
         if (thin > 0 && !scene_.solid)
             scene_.log.push_back(fmt::format(
                 "{}: {} of {} polygons are thinner than two cells of {:.6g} m: each stands on the cells that "
-                "it cuts; areas in results are those of the file",
-                place(), thin, outline.parts.size(), cell));
+                "it cuts, the thinnest about {:.3g} m wide; areas in results are those of the file",
+                place(), thin, outline.parts.size(), cell, std::max(thinnest, cell) + cell));
+    }
+
+    void remark_thin_wall(const Barrier& barrier) const {
+        const double cell = scene_.bed.geometry.cell;
+        if (scene_.solid || barrier.line.empty() || !barrier.thickness || *barrier.thickness >= 2.0 * cell) return;
+        scene_.log.push_back(fmt::format(
+            "{}: found {:.4g} m, less than two cells of {:.6g} m: the wall stands on the cells that it cuts, about "
+            "{:.3g} m wide",
+            case_.place(prefix_ + "thickness"), *barrier.thickness, cell, std::max(*barrier.thickness, cell) + cell));
     }
 
     /// One for each polygon [m].

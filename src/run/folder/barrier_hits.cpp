@@ -8,30 +8,11 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "compare/overlap.h"
+#include "terrain/outline_nodes.h"
 #include "terrain/part_of.h"
 
 namespace frana {
 namespace {
-
-/// From the nearest place of an outline to a point; zero inside.
-Vec2 away_from(const Polygons& outline, const Vec2& point) {
-    Vec2 least(INFINITY, INFINITY);
-    bool inside = false;
-    for (const Polygon& polygon : outline.parts)
-        for (const auto& ring : polygon.rings)
-            for (std::size_t k = 0; k < ring.size(); ++k) {
-                const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
-                const Vec2 side = b - a;
-                const double length2 = side.squaredNorm();
-                const double share = length2 > 0.0 ? std::clamp((point - a).dot(side) / length2, 0.0, 1.0) : 0.0;
-                const Vec2 away = point - a - share * side;
-                if (!(least.squaredNorm() <= away.squaredNorm())) least = away;
-                if ((a.y() > point.y()) != (b.y() > point.y()) &&
-                    point.x() < a.x() + (point.y() - a.y()) / (b.y() - a.y()) * side.x())
-                    inside = !inside;
-            }
-    return inside || !std::isfinite(least.x()) ? Vec2(0, 0) : least;
-}
 
 /// Whether a direction faces each of kSides. Round-off does not decide on a diagonal.
 std::array<bool, 4> sides_of(const Vec2& away) {
@@ -54,15 +35,22 @@ NodeBox pixels_around(const Polygons& outline, const GridGeometry& grid) {
     return common(widened(cells_of(corners, grid), 2), NodeBox::all(grid));
 }
 
-/// Those that it touches, and their eight neighbours.
-std::vector<char> touched(const Polygons& outline, const GridGeometry& part) {
+/// Pixels that it touches, nodes that it raises, and the eight neighbours of both. With a face on an edge of pixels those
+/// beyond are raised too, and the flow stands one farther out.
+std::vector<char> around(const Polygons& outline, const GridGeometry& part) {
     std::vector<char> marks(static_cast<std::size_t>(part.size()), 0);
-    for_each_pixel_area(part, rings_of(outline), [&](Index i, Index j, double area) {
-        if (!(area > 0.0)) return;
+    const auto mark = [&](Index i, Index j) {
         for (Index b = std::max<Index>(0, j - 1); b <= std::min(part.ny - 1, j + 1); ++b)
             for (Index a = std::max<Index>(0, i - 1); a <= std::min(part.nx - 1, i + 1); ++a)
                 marks[static_cast<std::size_t>(b * part.nx + a)] = 1;
+    };
+    for_each_pixel_area(part, rings_of(outline), [&](Index i, Index j, double area) {
+        if (area > 0.0) mark(i, j);
     });
+    const std::vector<char> raised = nodes_of_outline(outline, part);
+    for (Index j = 0; j < part.ny; ++j)
+        for (Index i = 0; i < part.nx; ++i)
+            if (raised[static_cast<std::size_t>(j * part.nx + i)]) mark(i, j);
     return marks;
 }
 
@@ -98,7 +86,7 @@ BarrierHit hit_on(const Polygons& outline, const std::vector<ProductRaster>& ras
     const NodeBox box = pixels_around(outline, all);
     if (box.nx < 1 || box.ny < 1) return hit;
     const GridGeometry part = box.of(all);
-    const std::vector<char> marks = touched(outline, part);
+    const std::vector<char> marks = around(outline, part);
     const Fields fields{find_product(rasters, "peak_depth"), find_product(rasters, "peak_dynamic_pressure"),
                         find_product(rasters, "arrival_time")};
     for (Index j = 0; j < part.ny; ++j)

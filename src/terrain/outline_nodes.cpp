@@ -1,0 +1,51 @@
+#include "terrain/outline_nodes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frana {
+namespace {
+
+constexpr double kRoundOff = 1.0 + 1e-9;  ///< it does not decide where a side lies on an edge of pixels
+
+/// Whether a node is in an outline or within half a cell of it, where a strip thinner than a cell counts as one of a cell
+/// about its middle. Two cells on across it, places beyond the middle are nearer to its other side.
+bool is_in_reach(const Polygons& outline, const Vec2& node, double cell) {
+    const Vec2 away = away_from(outline, node);
+    const double far = away.norm();
+    if (far <= 0.5 * kRoundOff * cell) return true;
+    if (far > cell) return false;
+    const Vec2 across = node - 2.0 * cell / far * away;
+    return far * kRoundOff < away_from(outline, across).norm();
+}
+
+}  // namespace
+
+Vec2 away_from(const Polygons& outline, const Vec2& point) {
+    Vec2 least(INFINITY, INFINITY);
+    bool inside = false;
+    for (const Polygon& polygon : outline.parts)
+        for (const auto& ring : polygon.rings)
+            for (std::size_t k = 0; k < ring.size(); ++k) {
+                const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+                const Vec2 side = b - a;
+                const double length2 = side.squaredNorm();
+                const double share = length2 > 0.0 ? std::clamp((point - a).dot(side) / length2, 0.0, 1.0) : 0.0;
+                const Vec2 away = point - a - share * side;
+                if (!(least.squaredNorm() <= away.squaredNorm())) least = away;
+                if ((a.y() > point.y()) != (b.y() > point.y()) &&
+                    point.x() < a.x() + (point.y() - a.y()) / (b.y() - a.y()) * side.x())
+                    inside = !inside;
+            }
+    return inside || !std::isfinite(least.x()) ? Vec2(0, 0) : least;
+}
+
+std::vector<char> nodes_of_outline(const Polygons& outline, const GridGeometry& grid) {
+    std::vector<char> marks;
+    for (Index j = 0; j < grid.ny; ++j)
+        for (Index i = 0; i < grid.nx; ++i)
+            marks.push_back(is_in_reach(outline, {grid.x(i), grid.y(j)}, grid.cell) ? 1 : 0);
+    return marks;
+}
+
+}  // namespace frana

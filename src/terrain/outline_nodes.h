@@ -1,0 +1,17 @@
+#pragma once
+// Which nodes of a grid stand for what has an outline in the map.
+#include <vector>
+
+#include "terrain/raster.h"
+
+namespace frana {
+
+/// From the nearest place of an outline to a point [m]; zero inside, and without an outline.
+Vec2 away_from(const Polygons& outline, const Vec2& point);
+
+/// For each node of the grid, row after row: 1 in the outline or within half a cell of it. A strip thinner than a cell
+/// counts as a cell thick: else its nodes meet at corners only where it is askew, and ground raised at them sags to half
+/// between them. The cost is that of the grid times the sides.
+std::vector<char> nodes_of_outline(const Polygons& outline, const GridGeometry& grid);
+
+}  // namespace frana
