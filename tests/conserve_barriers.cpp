@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "catch.h"
 #include "checks/verify/body.h"
+#include "coupling/flow_map.h"
 #include "coupling/open_share.h"
 #include "coupling/staged_run.h"
 #include "coupling/walled_columns.h"
@@ -467,7 +468,8 @@ TEST_CASE("Depth before a wall is that of what stands there, whatever the wall t
     const GridGeometry& g = scene.bed.geometry;  // cells of 0.5 m
     for (const double face : {10.0, 9.75}) {
         scene.barriers[0].outline = rectangle_of(face, -1.0, 12.0, 5.0);
-        const std::vector<double> open = open_shares(scene);
+        const OpenShares shares(scene);
+        const std::vector<double>& open = shares.at_bed();
         const auto at = [&](double x) {
             return open[static_cast<std::size_t>(4 * g.nx + std::lround((x - g.x0) / g.cell))];
         };
@@ -478,6 +480,48 @@ TEST_CASE("Depth before a wall is that of what stands there, whatever the wall t
         CHECK(at(11.0) == 1.0);         // what is there stands on top
         CHECK(at(0.0) == Approx(0.5));  // at the window's closed side, which is the terrain's wall
         CHECK(open.front() == Approx(0.25));
+    }
+}
+
+// A lake at rest over a low box whose faces stand on nodes, between them, and on a slope: a node on a face is as deep
+// as what stands before it. Bilinear shares of points side by side, as many as parts, are exact. On a slope tops cut
+// through points: half a point at most, which counts up to twice, 4 % of the depth.
+TEST_CASE("Depth on the crest of a barrier is that of what stands there, next to its faces too", "[barrier]") {
+    constexpr double kLevel = 3.0, kHigh = 1.5, kPart = 0.125, kLift = 10.0;
+    const auto [west, slope] = GENERATE(table<double, double>({{4.0, 0.0}, {3.75, 0.0}, {4.0, 0.25}}));
+    CAPTURE(west, slope);
+    const auto bed = [s = slope](double x, double) { return kLift + s * x; };
+    Scene scene = scene_on(15, 12, 1.0, bed);
+    scene.density = 1000.0;
+    scene.sides = Sides::wall;
+    Barrier box;
+    box.outline = rectangle_of(west, 3.0, 10.0, 7.0);
+    box.height = kHigh;
+    scene.barriers = {box};
+    SolidStage stage;
+    stage.window = {0, 0, 14, 11};
+    stage.cell = 0.5;
+    stage.law = solid::Fluid{};
+    scene.solid = stage;
+    const auto in_box = [&, w = west](double x, double y) { return x > w && x < 10.0 && y > 3.0 && y < 7.0; };
+    SolidScene space;
+    space.density = scene.density;
+    space.law = solid::Fluid{1e6, 0.0};
+    space.grid = {Vec3(-1, -1, kLift - 1), 0.5, {35, 29, 24}};
+    for (double x = 0.5 * kPart; x < 14.0; x += kPart)
+        for (double y = 0.5 * kPart; y < 11.0; y += kPart)
+            for (double above = 0.5 * kPart; above < kLevel; above += kPart)
+                if (!in_box(x, y) || above > kHigh)
+                    space.points.add({x, y, bed(x, y) + above}, Vec3::Zero(), scene.density * std::pow(kPart, 3), 0.0);
+    const Mpm3d points(space);
+    FlowMap map(scene);
+    map.sample(points, 0.0);
+    const GridGeometry& g = scene.bed.geometry;
+    for (Index k = 0; k < g.size(); ++k) {
+        const double x = g.x(k % g.nx), y = g.y(k / g.nx);
+        const bool on_crest = x > 4.5 && x < 9.5 && y > 3.5 && y < 6.5;
+        CAPTURE(x, y);
+        CHECK(map.depth(k) == Approx(on_crest ? kLevel - kHigh : kLevel).epsilon(slope > 0.0 ? kPart / kLevel : 1e-9));
     }
 }
 
