@@ -613,6 +613,18 @@ TEST_CASE("A barrier's largest means are those of its windows, with force and mo
     CHECK(means[3].time == Approx(last));
 }
 
+TEST_CASE("A largest mean force that lies within its window of the end of forces is remarked upon", "[barrier]") {
+    std::vector<BarrierSummary> barriers(3);
+    barriers[0].name = "rising", barriers[1].name = "fallen", barriers[2].name = "dry";
+    barriers[0].means = {{0.05, 9e4, 2.0}, {1.0, 64.6e3, 3.997}};
+    barriers[1].means = {{0.05, 9e4, 3.99}, {1.0, 64.6e3, 2.9}};  // its short blow came late, its force did not
+    barriers[2].means = {{1.0, 0.0, 4.0}};
+    const auto remarks = remarks_on_rising(barriers, {4.0, "the 3D stage ends", "stage.until"});
+    REQUIRE(remarks.size() == 1);
+    for (const char* part : {"rising: ", "64.6 kN", "3.997 s", "the 3D stage ends at 4 s", "give a later stage.until"})
+        CHECK(remarks[0].find(part) != std::string::npos);
+}
+
 TEST_CASE("A barrier's mean force begins within a step, and its raw peak is horizontal", "[barrier]") {
     const FreshFolder scratch;
     std::vector<BarrierSummary> summaries;
