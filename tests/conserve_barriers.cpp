@@ -625,6 +625,30 @@ TEST_CASE("A largest mean force that lies within its window of the end of forces
         CHECK(remarks[0].find(part) != std::string::npos);
 }
 
+TEST_CASE("A flow that is thin where it comes to a barrier is remarked upon, however deep it was as it became points",
+          "[barrier]") {
+    Scene scene = channel(6.0);  // of 15 m: a block 6 cells deep, and what comes of it
+    fill(scene, [](double x, double) { return x < 1.5 ? 1.5 : 0.0; });
+    scene.particles.vx.assign(scene.particles.x.size(), 0.0);
+    {
+        StagedRun run(scene);
+        run_to(run, 0.2);
+        CHECK_FALSE(said(run, "3D points were up to"));  // nothing has come to it
+        while (!run.loads()->barriers.at(0).touched && run.status().time < 3.5) run.advance(3.5);
+        REQUIRE(run.loads()->barriers.at(0).touched);
+        run_to(run, run.status().time + 0.1);  // before it piles up there
+        CHECK_FALSE(said(run, "3D points came in"));
+        CHECK(said(run, "wall: 3D points were up to"));
+    }
+    Scene deep = channel(6.0);
+    fill(deep, [](double x, double) { return x < 10.0 ? 1.5 : 0.0; });
+    deep.particles.vx.assign(deep.particles.x.size(), 0.0);
+    StagedRun run(deep);
+    run_to(run, 0.2);
+    CHECK(run.loads()->barriers.at(0).touched);
+    CHECK_FALSE(said(run, "3D points were up to"));
+}
+
 TEST_CASE("A barrier's mean force begins within a step, and its raw peak is horizontal", "[barrier]") {
     const FreshFolder scratch;
     std::vector<BarrierSummary> summaries;
