@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "catch.h"
 #include "checks/verify/body.h"
+#include "coupling/flow_map.h"
 #include "coupling/open_share.h"
 #include "coupling/staged_run.h"
 #include "coupling/walled_columns.h"
@@ -508,7 +509,8 @@ TEST_CASE("Depth before a wall is that of what stands there, whatever the wall t
     const GridGeometry& g = scene.bed.geometry;  // cells of 0.5 m
     for (const double face : {10.0, 9.75}) {
         scene.barriers[0].outline = rectangle_of(face, -1.0, 12.0, 5.0);
-        const std::vector<double> open = open_shares(scene);
+        const OpenShares shares(scene);
+        const std::vector<double>& open = shares.at_bed();
         const auto at = [&](double x) {
             return open[static_cast<std::size_t>(4 * g.nx + std::lround((x - g.x0) / g.cell))];
         };
@@ -519,6 +521,48 @@ TEST_CASE("Depth before a wall is that of what stands there, whatever the wall t
         CHECK(at(11.0) == 1.0);         // what is there stands on top
         CHECK(at(0.0) == Approx(0.5));  // at the window's closed side, which is the terrain's wall
         CHECK(open.front() == Approx(0.25));
+    }
+}
+
+// A lake at rest over a low box whose faces stand on nodes, between them, and on a slope: a node on a face is as deep
+// as what stands before it. Bilinear shares of points side by side, as many as parts, are exact. On a slope tops cut
+// through points: half a point at most, which counts up to twice, 4 % of the depth.
+TEST_CASE("Depth on the crest of a barrier is that of what stands there, next to its faces too", "[barrier]") {
+    constexpr double kLevel = 3.0, kHigh = 1.5, kPart = 0.125, kLift = 10.0;
+    const auto [west, slope] = GENERATE(table<double, double>({{4.0, 0.0}, {3.75, 0.0}, {4.0, 0.25}}));
+    CAPTURE(west, slope);
+    const auto bed = [s = slope](double x, double) { return kLift + s * x; };
+    Scene scene = scene_on(15, 12, 1.0, bed);
+    scene.density = 1000.0;
+    scene.sides = Sides::wall;
+    Barrier box;
+    box.outline = rectangle_of(west, 3.0, 10.0, 7.0);
+    box.height = kHigh;
+    scene.barriers = {box};
+    SolidStage stage;
+    stage.window = {0, 0, 14, 11};
+    stage.cell = 0.5;
+    stage.law = solid::Fluid{};
+    scene.solid = stage;
+    const auto in_box = [&, w = west](double x, double y) { return x > w && x < 10.0 && y > 3.0 && y < 7.0; };
+    SolidScene space;
+    space.density = scene.density;
+    space.law = solid::Fluid{1e6, 0.0};
+    space.grid = {Vec3(-1, -1, kLift - 1), 0.5, {35, 29, 24}};
+    for (double x = 0.5 * kPart; x < 14.0; x += kPart)
+        for (double y = 0.5 * kPart; y < 11.0; y += kPart)
+            for (double above = 0.5 * kPart; above < kLevel; above += kPart)
+                if (!in_box(x, y) || above > kHigh)
+                    space.points.add({x, y, bed(x, y) + above}, Vec3::Zero(), scene.density * std::pow(kPart, 3), 0.0);
+    const Mpm3d points(space);
+    FlowMap map(scene);
+    map.sample(points, 0.0);
+    const GridGeometry& g = scene.bed.geometry;
+    for (Index k = 0; k < g.size(); ++k) {
+        const double x = g.x(k % g.nx), y = g.y(k / g.nx);
+        const bool on_crest = x > 4.5 && x < 9.5 && y > 3.5 && y < 6.5;
+        CAPTURE(x, y);
+        CHECK(map.depth(k) == Approx(on_crest ? kLevel - kHigh : kLevel).epsilon(slope > 0.0 ? kPart / kLevel : 1e-9));
     }
 }
 
@@ -608,6 +652,42 @@ TEST_CASE("A barrier's largest means are those of its windows, with force and mo
     CHECK(means[2].moment.z() == Approx(0.2));
     CHECK(means[3].largest == Approx(std::hypot(2.0 * last + 0.02, 4.0 * 0.02) / 7.0));  // the run is shorter
     CHECK(means[3].time == Approx(last));
+}
+
+TEST_CASE("A largest mean force that lies within its window of the end of forces is remarked upon", "[barrier]") {
+    std::vector<BarrierSummary> barriers(3);
+    barriers[0].name = "rising", barriers[1].name = "fallen", barriers[2].name = "dry";
+    barriers[0].means = {{0.05, 9e4, 2.0}, {1.0, 64.6e3, 3.997}};
+    barriers[1].means = {{0.05, 9e4, 3.99}, {1.0, 64.6e3, 2.9}};  // its short blow came late, its force did not
+    barriers[2].means = {{1.0, 0.0, 4.0}};
+    const auto remarks = remarks_on_rising(barriers, {4.0, "the 3D stage ends", "stage.until"});
+    REQUIRE(remarks.size() == 1);
+    for (const char* part : {"rising: ", "64.6 kN", "3.997 s", "the 3D stage ends at 4 s", "give a later stage.until"})
+        CHECK(remarks[0].find(part) != std::string::npos);
+}
+
+TEST_CASE("A flow that is thin where it comes to a barrier is remarked upon, however deep it was as it became points",
+          "[barrier]") {
+    Scene scene = channel(6.0);  // of 15 m: a block 6 cells deep, and what comes of it
+    fill(scene, [](double x, double) { return x < 1.5 ? 1.5 : 0.0; });
+    scene.particles.vx.assign(scene.particles.x.size(), 0.0);
+    {
+        StagedRun run(scene);
+        run_to(run, 0.2);
+        CHECK_FALSE(said(run, "3D points were up to"));  // nothing has come to it
+        while (!run.loads()->barriers.at(0).touched && run.status().time < 3.5) run.advance(3.5);
+        REQUIRE(run.loads()->barriers.at(0).touched);
+        run_to(run, run.status().time + 0.1);  // before it piles up there
+        CHECK_FALSE(said(run, "3D points came in"));
+        CHECK(said(run, "wall: 3D points were up to"));
+    }
+    Scene deep = channel(6.0);
+    fill(deep, [](double x, double) { return x < 10.0 ? 1.5 : 0.0; });
+    deep.particles.vx.assign(deep.particles.x.size(), 0.0);
+    StagedRun run(deep);
+    run_to(run, 0.2);
+    CHECK(run.loads()->barriers.at(0).touched);
+    CHECK_FALSE(said(run, "3D points were up to"));
 }
 
 TEST_CASE("A barrier's mean force begins within a step, and its raw peak is horizontal", "[barrier]") {

@@ -7,6 +7,7 @@
 #include "coupling/walled_columns.h"
 #include "observe/memory_archive.h"
 #include "scene/build_scene.h"
+#include "scene/joined_barriers.h"
 #include "slope_case.h"
 
 using namespace frana;
@@ -97,6 +98,45 @@ TEST_CASE("Houses beyond the terrain are left out with a remark, the others keep
     REQUIRE(scene.barriers.size() == 2);
     CHECK((scene.barriers[0].name == "house_1" && scene.barriers[1].name == "house_3"));
     CHECK(says(scene, "1 of 3 polygons are not on the terrain"));
+}
+
+TEST_CASE("Barriers that overlap, or touch along a side, are named where 3D points meet them", "[scene][barriers]") {
+    constexpr double kCell = 0.5;
+    const auto joined = [&](const Polygons& one, const Polygons& other) {
+        std::vector<Barrier> pair(2);
+        pair[0].outline = one, pair[1].outline = other;
+        const std::size_t found = joined_barriers(pair, kCell).size();
+        std::swap(pair[0], pair[1]);
+        CHECK(joined_barriers(pair, kCell).size() == found);
+        return found == 1;
+    };
+    const Polygons wall = rectangle(30, 0, 32, 25);
+    CHECK(joined(wall, rectangle(31, 0, 33, 25)));     // one behind the other
+    CHECK(joined(wall, rectangle(28, 10, 31, 14)));    // a T
+    CHECK(joined(wall, rectangle(28, 10, 30, 14)));    // the same that only touches
+    CHECK(joined(wall, rectangle(30.2, 10, 31, 14)));  // within
+    CHECK(joined(wall, wall));
+    CHECK(joined(rectangle(0, 0, 2, 14), rectangle(0, 10, 2, 25)));  // sides on one line
+    CHECK_FALSE(joined(wall, rectangle(28, 10, 29.99, 14)));
+    CHECK_FALSE(joined(wall, rectangle(32, 0, 34, 25)));   // back to back
+    CHECK_FALSE(joined(wall, rectangle(30, 25, 32, 40)));  // end to end
+    CHECK_FALSE(joined(wall, rectangle(32, 25, 34, 40)));  // corner to corner
+    std::vector<Barrier> lines(2);  // walls along lines stand 1.5 m thick on their dry side at least
+    lines[0].line = {{0, 0}, {0, 10}}, lines[1].line = {{1.4, 0}, {1.4, 10}};
+    CHECK(joined_barriers(lines, kCell).size() == 1);
+    lines[1].line = {{1.6, 0}, {1.6, 10}};
+    CHECK(joined_barriers(lines, kCell).empty());
+    lines[1].thickness = 2.0, lines[1].wet_left = false;
+    CHECK(joined_barriers(lines, kCell).size() == 1);
+
+    FakeGis gis = slope_gis();
+    gis.polygons["houses.gpkg"] = village(3, 12, 17);
+    const std::string keys = "height = 6\neach = true\n";
+    const std::string stage = "[[stage]]\nmodel = \"solid_flow\"\nwindow = [1020, 2020, 1100, 2100]\n";
+    CHECK_FALSE(says(scene_of(with_houses(keys, stage), gis), "overlap"));
+    gis.polygons["houses.gpkg"].parts[2] = rectangle(1035, 2015, 1045, 2025).parts[0];
+    CHECK(says(scene_of(with_houses(keys, stage), gis), "house_2 and house_3: found barriers that overlap"));
+    CHECK_FALSE(says(scene_of(with_houses(keys), gis), "overlap"));  // to columns they are ground
 }
 
 TEST_CASE("Houses thinner than two cells are remarked upon", "[scene][barriers]") {

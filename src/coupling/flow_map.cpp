@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "coupling/open_share.h"
-
 namespace frana {
 
 FlowMap::FlowMap(const Scene& scene)
@@ -12,9 +10,10 @@ FlowMap::FlowMap(const Scene& scene)
       density_(scene.density),
       gravity_(scene.gravity),
       footprint_depth_(scene.output.footprint_depth),
+      open_(scene),
       nodes_(static_cast<std::size_t>(grid_.size())),
       peaks_(static_cast<std::size_t>(grid_.size())) {
-    const std::vector<double> open = open_shares(scene);
+    const std::vector<double>& open = open_.at_bed();
     areas_.reserve(nodes_.size());
     steepening_.reserve(nodes_.size());
     for (Index j = 0; j < grid_.ny; ++j)
@@ -92,7 +91,9 @@ void FlowMap::set_adjacent(const FlowColumns& columns) {
     for (std::size_t c = 0; c < columns.count(); ++c) {
         const Vec2 along(columns.vx[c], columns.vy[c]);
         const Vec3 velocity(along.x(), along.y(), along.dot(Vec2(columns.slope_x[c], columns.slope_y[c])));
-        Around(grid_, columns.x[c], columns.y[c]).each([&](Index k, double w) {
+        const double middle = columns.bed[c] + 0.5 * columns.depth[c];
+        Around(grid_, columns.x[c], columns.y[c]).each([&](Index k, double share) {
+            const double w = share * open_.narrowing(k, middle);
             Node& node = adjacent_[static_cast<std::size_t>(k)];
             if (node.mass == 0.0) adjacent_places_.push_back(k);
             node.mass += w * columns.mass[c];
@@ -108,7 +109,8 @@ void FlowMap::sample(const Mpm3d& flow, double time) {
         const Vec3 x = flow.position(p);
         const double mass = flow.body().points.mass[p];
         const Vec3 momentum = mass * flow.velocity(p);
-        Around(grid_, x[0], x[1]).each([&](Index k, double w) {
+        Around(grid_, x[0], x[1]).each([&](Index k, double share) {
+            const double w = share * open_.narrowing(k, x[2]);
             Node& node = nodes_[static_cast<std::size_t>(k)];
             node.mass += w * mass;
             node.momentum += w * momentum;

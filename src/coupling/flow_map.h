@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "convert/flow_columns.h"
+#include "coupling/open_share.h"
 #include "mpm/node_peak.h"
 #include "observe/archive.h"
 #include "observe/observer.h"
@@ -15,7 +16,8 @@ namespace frana {
 
 class FlowMap {
 public:
-    /// A node's material: what the points around it give it, bilinear.
+    /// A node's material: what the points around it give it, bilinear. What stands above a barrier's top, where the node
+    /// is wider, counts as the share of it that goes onto the width on the bed (OpenShares::narrowing()).
     struct Node {
         double mass = 0.0;       ///< [kg]
         Vec3 momentum{0, 0, 0};  ///< [kg m/s]
@@ -26,7 +28,7 @@ public:
     void sample(const Mpm3d& flow, double time);
 
     const GridGeometry& grid() const { return grid_; }
-    /// Volume without stress over the area of a cell [m]. A pile of air and drops is as deep as if it had settled.
+    /// Volume without stress over the area that is open at its height [m]. A pile of air and drops is as deep as if it had settled.
     double depth(Index k) const {
         return nodes_[static_cast<std::size_t>(k)].mass / (density_ * areas_[static_cast<std::size_t>(k)]);
     }
@@ -66,6 +68,7 @@ private:
     GridGeometry grid_;
     double density_, gravity_, footprint_depth_;
     Vec2 centre_{0, 0};               ///< of the release [m]
+    OpenShares open_;                 ///< of the nodes' cells
     std::vector<double> areas_;       ///< of the nodes' cells, without what walls and barriers take of them [m2]
     std::vector<double> steepening_;  ///< 1 + |grad Z|^2 at the nodes
     std::vector<Node> nodes_;

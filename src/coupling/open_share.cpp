@@ -1,9 +1,11 @@
 #include "coupling/open_share.h"
 
+#include <algorithm>
 #include <array>
 #include <bitset>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "coupling/barriers.h"
 #include "coupling/solid_scene.h"
@@ -33,7 +35,22 @@ Vec2 to_part(int part) {
     return {2.0 * (part % kParts + 0.5) / kParts - 1.0, 2.0 * (part / kParts + 0.5) / kParts - 1.0};
 }
 
-/// What is taken of each node that anything takes room from.
+/// Of a part in what its node stands for.
+double weight_of(int part) {
+    const Vec2 away = to_part(part);
+    const double weight = (1.0 - std::abs(away.x())) * (1.0 - std::abs(away.y()));
+    return weight;
+}
+
+/// body(node, its place) around these corners.
+template <class Body>
+void for_each_node_around(const std::vector<Vec2>& corners, const GridGeometry& g, Body&& body) {
+    const NodeBox box = common(widened(cells_of(corners, g), 1), NodeBox::all(g));
+    for (Index j = box.j0; j < box.j0 + box.ny; ++j)
+        for (Index i = box.i0; i < box.i0 + box.nx; ++i) body(j * g.nx + i, Vec2(g.x(i), g.y(j)));
+}
+
+/// What is taken of each node that anything may take room from.
 class TakenRoom {
 public:
     explicit TakenRoom(const GridGeometry& grid) : g_(grid) {}
@@ -41,13 +58,11 @@ public:
     /// Marks the parts of nodes around these corners at which `takes(place)` holds.
     template <class Takes>
     void mark(const std::vector<Vec2>& corners, Takes&& takes) {
-        const NodeBox box = common(widened(cells_of(corners, g_), 1), NodeBox::all(g_));
-        for (Index j = box.j0; j < box.j0 + box.ny; ++j)
-            for (Index i = box.i0; i < box.i0 + box.nx; ++i) {
-                Taken& taken = taken_[j * g_.nx + i];
-                for (int part = 0; part < kParts * kParts; ++part)
-                    if (takes(Vec2(Vec2(g_.x(i), g_.y(j)) + g_.cell * to_part(part)))) taken.set(part);
-            }
+        for_each_node_around(corners, g_, [&](Index node, const Vec2& at) {
+            Taken& taken = taken_[node];
+            for (int part = 0; part < kParts * kParts; ++part)
+                if (takes(Vec2(at + g_.cell * to_part(part)))) taken.set(part);
+        });
     }
     const std::map<Index, Taken>& by_node() const { return taken_; }
 
@@ -69,39 +84,86 @@ void mark_sides(const Scene& scene, TakenRoom& room) {
     }
 }
 
-/// What stands out of the ground.
-void mark_barriers(const Scene& scene, TakenRoom& room) {
-    for (const Barrier& barrier : scene.barriers) {
-        const Surface solid = surface_around(barrier, scene);
-        const auto [low, high] = box_around(solid);
-        room.mark({low.head<2>(), high.head<2>()}, [&](const Vec2& place) {
-            const double top = top_of(solid, place);
-            return std::isfinite(top) && top > bed_elevation(scene.bed, place.x(), place.y());
-        });
+/// A barrier that takes room where it stands out of the ground.
+struct Solid {
+    Surface surface;
+    std::vector<Vec2> corners;  ///< of the box around it
+
+    Solid(const Barrier& barrier, const Scene& scene) : surface(surface_around(barrier, scene)) {
+        const auto [low, high] = box_around(surface);
+        corners = {low.head<2>(), high.head<2>()};
     }
-}
+    /// Minus infinity where it takes none [m].
+    double top_at(const Vec2& place, const Raster& bed) const {
+        const double top = top_of(surface, place);
+        return top > bed_elevation(bed, place.x(), place.y()) ? top : -INFINITY;
+    }
+};
 
 double open_share(const Taken& taken) {
     constexpr double kNothing = 0.05;  // points there are on top
     double all = 0.0, open = 0.0;
     for (int part = 0; part < kParts * kParts; ++part) {
-        const Vec2 away = to_part(part);
-        const double weight = (1.0 - std::abs(away.x())) * (1.0 - std::abs(away.y()));
-        all += weight;
-        if (!taken[part]) open += weight;
+        all += weight_of(part);
+        if (!taken[part]) open += weight_of(part);
     }
     return open < kNothing * all ? 1.0 : open / all;
 }
 
+/// Up to where barriers take a node's parts [m].
+using Tops = std::array<double, kParts * kParts>;
+
+/// Of nodes that have some room on the bed, and not all. On the others nothing stands below a top.
+std::map<Index, Tops> tops_of(const std::vector<Solid>& solids, const Scene& scene, const std::vector<double>& at_bed) {
+    const GridGeometry& g = scene.bed.geometry;
+    Tops none;
+    none.fill(-INFINITY);
+    std::map<Index, Tops> tops;
+    for (const Solid& solid : solids)
+        for_each_node_around(solid.corners, g, [&](Index node, const Vec2& at) {
+            if (!(at_bed[static_cast<std::size_t>(node)] < 1.0)) return;
+            Tops& own = tops.try_emplace(node, none).first->second;
+            for (int part = 0; part < kParts * kParts; ++part)
+                own[static_cast<std::size_t>(part)] =
+                    std::max(own[static_cast<std::size_t>(part)], solid.top_at(at + g.cell * to_part(part), scene.bed));
+        });
+    return tops;
+}
+
+/// The share that is open above each top, with the top before it: upwards. Sides take theirs at any height.
+std::map<double, double> shares_above(const Tops& tops, const Taken& by_sides) {
+    std::map<double, double> above;
+    double open = 0.0, all = 0.0;
+    for (int part = 0; part < kParts * kParts; ++part) {
+        all += weight_of(part);
+        if (!by_sides[part]) above[tops[static_cast<std::size_t>(part)]] += weight_of(part);
+    }
+    for (auto& [top, share] : above) share = (open += share) / all;
+    above.erase(-INFINITY);  // what is open on the bed
+    return above;
+}
+
 }  // namespace
 
-std::vector<double> open_shares(const Scene& scene) {
+OpenShares::OpenShares(const Scene& scene) : at_bed_(static_cast<std::size_t>(scene.bed.geometry.size()), 1.0) {
     TakenRoom room(scene.bed.geometry);
     mark_sides(scene, room);
-    if (scene.solid) mark_barriers(scene, room);
-    std::vector<double> shares(static_cast<std::size_t>(scene.bed.geometry.size()), 1.0);
-    for (const auto& [node, taken] : room.by_node()) shares[static_cast<std::size_t>(node)] = open_share(taken);
-    return shares;
+    const std::map<Index, Taken> by_sides = room.by_node();
+    std::vector<Solid> solids;
+    if (scene.solid)
+        for (const Barrier& barrier : scene.barriers) solids.emplace_back(barrier, scene);
+    for (const Solid& solid : solids)
+        room.mark(solid.corners, [&](const Vec2& place) { return std::isfinite(solid.top_at(place, scene.bed)); });
+    for (const auto& [node, taken] : room.by_node()) at_bed_[static_cast<std::size_t>(node)] = open_share(taken);
+    const std::map<Index, Tops> tops = tops_of(solids, scene, at_bed_);
+    if (!tops.empty()) begin_.assign(at_bed_.size() + 1, 0);
+    for (const auto& [node, own] : tops) {
+        const auto k = static_cast<std::size_t>(node);
+        const auto sides = by_sides.find(node);
+        for (const auto& [top, share] : shares_above(own, sides == by_sides.end() ? Taken{} : sides->second))
+            steps_.push_back({top, at_bed_[k] / share}), ++begin_[k + 1];
+    }
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
 }
 
 }  // namespace frana

@@ -6,9 +6,31 @@
 
 namespace frana {
 
-/// The share that points can fill of what each node stands for, bilinear, row after row [1]. Barriers that stand out of
-/// the ground take the rest. So does what lies beyond walls of the terrain and closed sides of the stage's window. 1
-/// where next to nothing is left: what is found there stands on top.
-std::vector<double> open_shares(const Scene& scene);
+/// The shares that points can fill of what each node stands for, bilinear [1]. Barriers that stand out of the ground
+/// take the rest, each part of it up to its top there. So does what lies beyond walls of the terrain and closed sides
+/// of the stage's window, at any height.
+class OpenShares {
+public:
+    explicit OpenShares(const Scene& scene);
+    /// On the bed, row after row. 1 where next to nothing is left: what is found there stands on top.
+    const std::vector<double>& at_bed() const { return at_bed_; }
+    /// The share on the bed over the one at an elevation: below 1 above the top of a barrier.
+    double narrowing(Index node, double z) const {
+        if (steps_.empty()) return 1.0;
+        const auto k = static_cast<std::size_t>(node);
+        double narrowing = 1.0;
+        for (std::size_t s = begin_[k]; s < begin_[k + 1] && steps_[s].top <= z; ++s) narrowing = steps_[s].narrowing;
+        return narrowing;
+    }
+
+private:
+    struct Step {
+        double top;        ///< from this elevation on [m]
+        double narrowing;  ///< [1]
+    };
+    std::vector<double> at_bed_;
+    std::vector<Step> steps_;         ///< node after node, upwards
+    std::vector<std::size_t> begin_;  ///< of each node's, and the end; empty: no steps
+};
 
 }  // namespace frana

@@ -11,6 +11,7 @@
 #include "base/round_number.h"
 #include "coupling/bed_friction.h"
 #include "coupling/start_pressure.h"
+#include "terrain/part_of.h"
 
 namespace frana {
 
@@ -353,17 +354,60 @@ void StagedRun::remark_law(std::vector<std::string>& remarks) const {
             stage.bed_friction));
 }
 
+/// The largest depth of points at a barrier's faces so far, within a cell of the terrain [m].
+double StagedRun::deepest_at(const Surface& barrier) const {
+    const GridGeometry& g = scene_.bed.geometry;
+    const auto [low, high] = box_around(barrier);
+    const NodeBox box = common(widened(cells_of({low.head<2>(), high.head<2>()}, g), 1), NodeBox::all(g));
+    double deepest = 0.0;
+    for (Index j = box.j0; j < box.j0 + box.ny; ++j)
+        for (Index i = box.i0; i < box.i0 + box.nx; ++i) {
+            const double depth = map_.peak(j * g.nx + i).depth,
+                         distance =
+                             depth > deepest ? contact(barrier, {g.x(i), g.y(j), scene_.bed.at(i, j)}).distance : -1.0;
+            if (distance >= 0.0 && distance <= g.cell) deepest = depth;
+        }
+    return deepest;
+}
+
+constexpr double kEnoughCells = 4.0;  ///< of depth
+
+/// Flow that is deep as it becomes points may be thin where it comes to a barrier. It piles up there, so this says it
+/// late rather than too often.
+void StagedRun::remark_cells_at_barriers(std::vector<std::string>& remarks) const {
+    if (!watch_) return;
+    std::size_t n = 0, thin = 0;
+    double least = kEnoughCells * scene_.solid->cell;
+    std::string name;
+    for (const Surface& surface : points_->body().surfaces) {
+        if (!surface.is_barrier() || !watch_->loads().barriers[n++].touched) continue;
+        const double depth = deepest_at(surface);
+        if (!(depth > 0.0) || depth >= kEnoughCells * scene_.solid->cell) continue;
+        ++thin;
+        if (depth < least) least = depth, name = surface.name;
+    }
+    if (thin == 0) return;
+    remarks.push_back(
+        fmt::format("{}: 3D points were up to {:.3g} m deep at its faces, {:.2g} cells{}; expected {:.0f} or more, or "
+                    "forces hang on "
+                    "the cell, and run-up and what goes over it much more; stage.cell = {:g} would do",
+                    name, least, least / scene_.solid->cell,
+                    thin > 1 ? fmt::format(", and at {} more barriers fewer than expected", thin - 1) : "",
+                    kEnoughCells, round_number_below(least / kEnoughCells)));
+}
+
 /// Whether the cells in 3D resolve the flow's depth, and the layer that shears at a bed that holds it.
 void StagedRun::remark_cells(std::vector<std::string>& remarks) const {
-    constexpr double kEnough = 4.0;
     const SolidStage& stage = *scene_.solid;
     const double depth = depth_of_points(), cells = depth / stage.cell;
-    if (became_points_ > 0.0 && cells < kEnough)
+    if (became_points_ > 0.0 && cells < kEnoughCells)
         remarks.push_back(
             fmt::format("3D points came in {:.3g} m deep (mean by mass), {:.2g} cells; expected {:.0f} or more, "
                         "or forces hang on the cell, and run-up and what goes over a barrier much more; "
                         "stage.cell = {:g} would do",
-                        depth, cells, kEnough, round_number_below(depth / kEnough)));
+                        depth, cells, kEnoughCells, round_number_below(depth / kEnoughCells)));
+    else
+        remark_cells_at_barriers(remarks);
     if (stage.stuck_where_resolved && !start_.stuck)
         remarks.push_back(fmt::format(
             "3D points slide over the bed, which brakes them by material.bed; for mud that sticks to it, with "

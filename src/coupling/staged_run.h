@@ -102,6 +102,8 @@ private:
     void remark_walls(std::vector<std::string>& remarks) const;
     void remark_law(std::vector<std::string>& remarks) const;
     void remark_cells(std::vector<std::string>& remarks) const;
+    void remark_cells_at_barriers(std::vector<std::string>& remarks) const;
+    double deepest_at(const Surface& barrier) const;
     /// Of columns as they became points, mean by mass [m].
     double depth_of_points() const { return became_points_ > 0.0 ? their_depth_ / became_points_ : 0.0; }
     void remark_pieces(std::vector<std::string>& remarks) const;

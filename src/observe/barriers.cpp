@@ -23,6 +23,22 @@ std::vector<std::string> columns_of(std::size_t faces) {
 
 }  // namespace
 
+std::vector<std::string> remarks_on_rising(const std::vector<BarrierSummary>& barriers, const ForcesEnd& end) {
+    std::vector<std::string> remarks;
+    for (const BarrierSummary& barrier : barriers) {
+        if (barrier.means.empty()) continue;
+        const MeanForce& longest = barrier.means.back();  // windows ascend
+        if (!(longest.largest > 0.0) || longest.time < end.time - longest.window) continue;
+        remarks.push_back(
+            fmt::format("{}: found the largest mean of its force over {:g} s, {:.4g} kN, up to {:.6g} s, where {} at "
+                        "{:.6g} s; expected it to end {:g} s before or earlier, since the force may have been rising "
+                        "still; give a later {}",
+                        barrier.name, longest.window, 1e-3 * longest.largest, longest.time, end.at, end.time,
+                        longest.window, end.later));
+    }
+    return remarks;
+}
+
 Barriers::Barriers(std::filesystem::path run_dir, const std::vector<NamedBarrier>& barriers,
                    std::vector<BarrierSummary>& summaries)
     : run_dir_(std::move(run_dir)), summaries_(summaries) {

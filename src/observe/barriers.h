@@ -40,6 +40,16 @@ struct BarrierSummary {
     std::vector<MeanForce> means;                              ///< for each window of the barrier
 };
 
+/// When forces end, at what, and what would make that later.
+struct ForcesEnd {
+    double time = 0.0;  ///< [s]
+    std::string at, later;
+};
+
+/// A remark on each barrier whose largest mean over its longest window ends within that window of the end of forces: it
+/// may have been rising still.
+std::vector<std::string> remarks_on_rising(const std::vector<BarrierSummary>& barriers, const ForcesEnd& end);
+
 /// More barriers than these have no table of their own: opening hundreds at every output costs more than steps do.
 inline constexpr std::size_t kMostBarrierTables = 24;
 

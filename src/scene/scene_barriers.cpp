@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "particles/bed_points.h"
 #include "scene/barriers_of_case.h"
+#include "scene/joined_barriers.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
@@ -288,6 +289,9 @@ void read_barriers(const CaseFile& file, const GisReader& reader, const MeshRead
                                          scene.barriers[n].name, first->second),
                              "expected names that differ", "give another name");
     }
+    if (!scene.solid || !problems.empty()) return;
+    for (std::string& remark : remarks_on_joined(scene.barriers, scene.solid->cell))
+        scene.log.push_back(std::move(remark));
 }
 
 std::vector<Barrier> barriers_of_case(const CaseFile& file, const GisReader& reader, const Raster& bed,

@@ -68,9 +68,20 @@ void note_width(RunRecord& record, const Raster& covered) {
     if (!remark.empty()) record.warnings.push_back(remark);
 }
 
+/// Where the 3D stage or the run ends too early for the largest forces. At rest there is nothing to wait for.
+void note_rising_forces(RunRecord& record, const Scene& scene) {
+    if (!scene.solid) return;
+    const double last = record.summary.last.time, until = scene.solid->until.value_or(INFINITY);
+    if (until > last && record.summary.reason == "rest") return;
+    const ForcesEnd end = until <= last ? ForcesEnd{until, "the 3D stage ends", "stage.until"}
+                                        : ForcesEnd{last, "the run ends", "time.end"};
+    for (std::string& remark : remarks_on_rising(record.barriers, end)) record.warnings.push_back(std::move(remark));
+}
+
 void note_simulation(RunRecord& record, const Scene& scene, const Simulation& simulation) {
     record.extras = simulation.extras();
     for (const std::string& remark : simulation.remarks()) record.warnings.push_back(remark);
+    note_rising_forces(record, scene);
     if (const Friction* used = simulation.friction()) record.friction = used->parts, record.friction_of_part = true;
     if (!record.extras.water || record.of_water_alone())  // of which the scene's particles tell a part only
         record.release_volume = (record.summary.first.mass - record.summary.first.mass_in) / scene.density;
