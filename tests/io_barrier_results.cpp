@@ -320,3 +320,32 @@ TEST_CASE("Attributed polygons come back in the order of the polygons, types wid
     CHECK(back[0].polygon.rings.size() == 2);
     CHECK_THROWS_WITH(write_layers(folder.path() / "nowhere" / "a.gpkg", "", {}), Contains("cannot be written"));
 }
+
+TEST_CASE("The report has the forces of what leans on a barrier from the start", "[barriers][results]") {
+    const FreshFolder folder;
+    std::string dem = "ncols 13\nnrows 6\nxllcorner -0.5\nyllcorner -0.5\ncellsize 1\nNODATA_value -9999\n";
+    for (int row = 0; row < 6; ++row) dem += "10 10 10 10 10 10 10 10 10 10 10 10 10\n";
+    write_text(folder.path() / "dem.asc", dem);
+    const auto strip = [](double from, double to) {
+        const auto p = [](double x, double y) { return "[" + std::to_string(x) + "," + std::to_string(y) + "]"; };
+        return collection(R"({"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":[[)" +
+                          p(from, -0.4) + "," + p(to, -0.4) + "," + p(to, 5.4) + "," + p(from, 5.4) + "," +
+                          p(from, -0.4) + "]]}}");
+    };
+    write_text(folder.path() / "water.geojson", strip(-0.4, 8));
+    write_text(folder.path() / "dam.geojson", strip(8, 10));
+    write_text(
+        folder.path() / "case.toml",
+        "[terrain]\ndem = \"dem.asc\"\n[[release]]\noutline = \"water.geojson\"\ndepth = 2\n"
+        "[material]\ndensity = 1000\nbed.law = \"none\"\n[boundary]\nsides = \"wall\"\n[[stage]]\n"
+        "model = \"solid_flow\"\ncell = 0.5\n[[barrier]]\nname = \"dam\"\noutline = \"dam.geojson\"\nheight = 4\n"
+        "[time]\nend = 0.5\n[output]\nevery = 0.5\nformats = []\n");
+    const Outcome run = call_frana(folder.path(), "run case.toml --out run --quiet");
+    INFO(run.err);
+    REQUIRE(run.code == 0);
+    const Json dam = Json::parse(text_of(folder.path() / "run" / "run.json"))["barriers"][0];
+    REQUIRE(dam["peak_force"].get<double>() > 0.5e5);  // rho g h^2 b / 2 = 98 kN
+    const std::string report = text_of(folder.path() / "run" / "report.md");
+    CHECK_THAT(report, Contains("| Barrier | Mean over | Largest horizontal force |"));
+    CHECK_THAT(report, Contains("| dam | 0.01 s |"));
+}

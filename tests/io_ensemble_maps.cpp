@@ -140,6 +140,7 @@ TEST_CASE("Classes of hazard are a raster with colours and names, and areas in r
     // Six columns of nodes are released; in half a second the edge stays within a cell of where it was.
     CHECK(high == Approx(6 * 12 * 25.0).margin(12 * 25.0));
     CHECK_THAT(text_of(pond.path("many/report.md")), Contains("| low & seldom |"));
+    GDALAllRegister();  // the run was another process
     const std::unique_ptr<GDALDataset, decltype(&GDALClose)> file(
         static_cast<GDALDataset*>(GDALOpen(pond.path("many/rasters/hazard_class.tif").c_str(), GA_ReadOnly)),
         GDALClose);

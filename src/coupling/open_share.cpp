@@ -122,10 +122,9 @@ std::map<Index, Tops> tops_of(const std::vector<Solid>& solids, const Scene& sce
     for (const Solid& solid : solids)
         for_each_node_around(solid.corners, g, [&](Index node, const Vec2& at) {
             if (!(at_bed[static_cast<std::size_t>(node)] < 1.0)) return;
-            Tops& own = tops.try_emplace(node, none).first->second;
-            for (int part = 0; part < kParts * kParts; ++part)
-                own[static_cast<std::size_t>(part)] =
-                    std::max(own[static_cast<std::size_t>(part)], solid.top_at(at + g.cell * to_part(part), scene.bed));
+            int part = 0;
+            for (double& top : tops.try_emplace(node, none).first->second)
+                top = std::max(top, solid.top_at(at + g.cell * to_part(part++), scene.bed));
         });
     return tops;
 }

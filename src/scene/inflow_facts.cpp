@@ -20,7 +20,7 @@ InflowFacts facts_of(const Inflow& of, double gravity) {
     facts.area = of.area, facts.layer = of.layer;
     if (of.area > 0.0) return facts;
     facts.width = of.width();
-    facts.slope_deg = std::atan(of.slope) * 180.0 / constants::kPi;
+    facts.slope_deg = std::atan(of.slope) / constants::kDegree + 0.0;  // no -0
     facts.speed = of.speed[peak] / cosine;
     facts.thickness = facts.peak / (facts.width * facts.speed);
     facts.froude = facts.speed / std::sqrt(gravity * cosine * facts.thickness);

@@ -298,12 +298,13 @@ std::string barrier_row(const BarrierSummary& b, const BarrierHit& hit) {
     const auto or_dash = [](double value, const char* unit) {
         return std::isfinite(value) ? fmt::format("{:.4g} {}", value, unit) : std::string("-");
     };
-    const std::string contact = b.first_contact >= 0.0 ? fmt::format("{:.4g} s", b.first_contact)
-                                : !forces && reached   ? "-"
-                                                       : "none";
-    const std::string impulse = b.first_contact >= 0.0 && forces ? fmt::format("{:.4g}, {:.4g}, {:.4g} N s",
-                                                                               b.impulse[0], b.impulse[1], b.impulse[2])
-                                                                 : "-";
+    const std::string contact = b.first_contact >= 0.0                       ? fmt::format("{:.4g} s", b.first_contact)
+                                : reached && (!forces || b.peak_force > 0.0) ? "-"
+                                                                             : "none";
+    const std::string impulse =
+        forces && (b.first_contact >= 0.0 || b.peak_force > 0.0)
+            ? fmt::format("{:.4g}, {:.4g}, {:.4g} N s", b.impulse[0], b.impulse[1], b.impulse[2])
+            : "-";
     return fmt::format("| {} | {} | {} | {} | {} | {} | {:.5g} m3 |\n", b.name, contact, or_dash(hit.depth, "m"),
                        or_dash(1e-3 * hit.pressure, "kPa"), impulse, reached ? fmt::format("{:.5g} m", b.run_up) : "-",
                        b.overtopped);
@@ -320,8 +321,9 @@ std::string mean_forces(const RunRecord& r, const std::vector<std::size_t>& show
     std::string rows;
     for (const std::size_t n : shown) {
         const BarrierSummary& b = r.barriers[n];
-        if (b.first_contact < 0.0 || b.blur <= 0.0) continue;
+        if (b.blur <= 0.0) continue;
         for (const MeanForce& m : b.means) {
+            if (b.first_contact < 0.0 && !(m.largest > 0.0)) continue;  // nothing ever pressed on it
             const Vec3 force = without_round_off(m.force), moment = without_round_off(m.moment);
             rows += fmt::format(
                 "| {} | {:.4g} s | {:.4g} N | {:.4g} s | {:.4g}, {:.4g}, {:.4g} N | {:.4g}, {:.4g}, {:.4g} N m |\n",
