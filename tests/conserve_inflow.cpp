@@ -96,7 +96,6 @@ TEST_CASE("A closed basin fills with the volume of its tables, up to one level",
     inflow.speed = {1.0, 2.0, 2.0, 1.0, 1.0, 2.5};
     scene.inflows = {inflow};
     DepthAveraged run(scene);
-    const Status first = run.status();
     const auto volume_by = [&](double t) {
         CompensatedSum sum;
         for (std::size_t n = 0; n + 1 < inflow.time.size(); ++n) {

@@ -1,6 +1,4 @@
 // Releases that enter later: the bits of a run that starts then, the right step, budgets, threads and resumes.
-#include <omp.h>
-
 #include <sstream>
 
 #include "analytic_scene.h"
@@ -9,11 +7,9 @@
 #include "coupling/walled_columns.h"
 #include "growing_slope.h"
 #include "observe/budget.h"
-#include "observe/memory_archive.h"
 #include "run/memory_state.h"
 #include "run/run_loop.h"
 #include "same_run.h"
-#include "threads_of_test.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -231,33 +227,11 @@ TEST_CASE("What is hit at the start enters at the start", "[late]") {
 
 TEST_CASE("Late releases have the same bits on any number of threads, and when a run goes on between them",
           "[late][resume][threads]") {
-    const Threads restored;
     Scene scene = chain();
     delay(scene, "timed", 4.3, [](double x, double y) { return cap(x, y, 90, 20, 1.0); });
-    omp_set_num_threads(1);
-    DepthAveraged straight(scene);
-    std::vector<MemoryArchive> kept;
-    while (straight.status().time < 7.0) {
-        if (straight.status().step % 8 == 0) straight.serialize(kept.emplace_back());
-        straight.advance(7.0);
-    }
-    REQUIRE(kept.size() > 4);
-    for (const std::size_t n : {0, 1, 3}) REQUIRE(entry(straight.extras(), n).entered.has_value());
-    const auto expected = state_bits(straight);
-    for (std::size_t n = 0; n < kept.size(); ++n) {
-        omp_set_num_threads(n % 2 == 0 ? 4 : 2);
-        DepthAveraged resumed(scene, Start::resumed);
-        resumed.serialize(kept[n].rewind());
-        INFO("kept at " << resumed.status().time << " s");
-        run_to(resumed, 7.0);
-        CHECK((state_bits(resumed) == expected));
-    }
-    for (const int threads : {2, 4}) {
-        omp_set_num_threads(threads);
-        DepthAveraged again(scene);
-        run_to(again, 7.0);
-        CHECK((state_bits(again) == expected));
-    }
+    const Extras extras =
+        check_resumed_often(scene, 7.0, 8, [](auto& run, auto& straight) { check_same(run, straight); });
+    for (const std::size_t n : {0, 1, 3}) REQUIRE(entry(extras, n).entered.has_value());
 }
 
 TEST_CASE("A run waits for a release with a time, and is over without one that nothing hits", "[late]") {

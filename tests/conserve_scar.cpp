@@ -1,16 +1,12 @@
 // Later releases that stand in the bed until they go: the bed falls then, as one that was cut at the start.
-#include <omp.h>
-
 #include "analytic_scene.h"
 #include "catch.h"
 #include "coupling/growing_columns.h"
 #include "coupling/walled_columns.h"
 #include "growing_slope.h"
 #include "observe/budget.h"
-#include "observe/memory_archive.h"
 #include "run/memory_state.h"
 #include "same_run.h"
-#include "threads_of_test.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -261,7 +257,6 @@ TEST_CASE("What is loose below a release that stands in the bed stays until that
 
 TEST_CASE("A bed that falls has the same bits on any number of threads, and when a run goes on before or after",
           "[scar][late][resume][threads]") {
-    const Threads restored;
     for (const bool loose : {false, true}) {
         Scene scene = valley();
         fill(scene, slab);
@@ -271,29 +266,9 @@ TEST_CASE("A bed that falls has the same bits on any number of threads, and when
             scene.erodible = ErodibleBed{Raster::filled(scene.bed.geometry, 0.1), 1600.0, erosion::Growth{0.01}};
             scene.deposition = Deposition{0.5};
         }
-        omp_set_num_threads(1);
-        DepthAveraged straight(scene);
-        std::vector<MemoryArchive> kept;
-        while (straight.status().time < 8.0) {
-            if (straight.status().step % 12 == 0) straight.serialize(kept.emplace_back());
-            straight.advance(8.0);
-        }
-        REQUIRE(kept.size() > 4);
-        for (const std::size_t n : {0, 1}) REQUIRE(straight.extras().late.at(n).entered.has_value());
-        for (std::size_t n = 0; n < kept.size(); ++n) {
-            omp_set_num_threads(n % 2 == 0 ? 4 : 2);
-            DepthAveraged resumed(scene, Start::resumed);
-            resumed.serialize(kept[n].rewind());
-            INFO("kept at " << resumed.status().time << " s");
-            run_to(resumed, 8.0);
-            check_same(resumed, straight, "bed/left");
-        }
-        for (const int threads : {2, 4}) {
-            omp_set_num_threads(threads);
-            DepthAveraged again(scene);
-            run_to(again, 8.0);
-            check_same(again, straight, "bed/left");
-        }
+        const Extras extras = check_resumed_often(
+            scene, 8.0, 12, [](auto& run, auto& straight) { check_same(run, straight, "bed/left"); });
+        for (const std::size_t n : {0, 1}) REQUIRE(extras.late.at(n).entered.has_value());
     }
 }
 

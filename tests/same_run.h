@@ -41,6 +41,35 @@ inline void check_same(DepthAveraged& a, DepthAveraged& b, const std::string& le
     CHECK(std::memcmp(x.smooth.data(), y.smooth.data(), 2 * size) == 0);
 }
 
+/// A run on one thread is put away after every so many steps. It goes on from each on 4 and 2 threads, and runs anew on as
+/// many: same(such a run, the first) each. Returns the extras of the first.
+template <class Same>
+Extras check_resumed_often(const Scene& scene, double end, Index steps, Same&& same) {
+    const Threads one(1);
+    DepthAveraged straight(scene);
+    std::vector<MemoryArchive> kept;
+    while (straight.status().time < end) {
+        if (straight.status().step % steps == 0) straight.serialize(kept.emplace_back());
+        straight.advance(end);
+    }
+    REQUIRE(kept.size() > 4);
+    for (std::size_t n = 0; n < kept.size(); ++n) {
+        const Threads several(n % 2 == 0 ? 4 : 2);
+        DepthAveraged resumed(scene, Start::resumed);
+        resumed.serialize(kept[n].rewind());
+        INFO("kept at " << resumed.status().time << " s");
+        run_to(resumed, end);
+        same(resumed, straight);
+    }
+    for (const int threads : {2, 4}) {
+        const Threads several(threads);
+        DepthAveraged again(scene);
+        run_to(again, end);
+        same(again, straight);
+    }
+    return straight.extras();
+}
+
 /// A run on 1, 2, and 4 threads, and one that goes on from a state of half of the time. Mass and momentum are kept.
 inline void check_threads_and_resume(const Scene& scene, double end) {
     const double half = 0.5 * end;

@@ -38,8 +38,7 @@ Vec2 to_part(int part) {
 /// Of a part in what its node stands for.
 double weight_of(int part) {
     const Vec2 away = to_part(part);
-    const double weight = (1.0 - std::abs(away.x())) * (1.0 - std::abs(away.y()));
-    return weight;
+    return (1.0 - std::abs(away.x())) * (1.0 - std::abs(away.y()));
 }
 
 /// body(node, its place) around these corners.
