@@ -137,4 +137,13 @@ template <class Real>
     to[3] = __builtin_shufflevector(ab1, cd1, 2, 3, 6, 7);
 }
 
+/// The sum of each of four values.
+[[gnu::always_inline]] inline Double4 sums_of_each(const Double4 (&of)[4]) {
+    const Double4 ab =
+        __builtin_shufflevector(of[0], of[1], 0, 4, 2, 6) + __builtin_shufflevector(of[0], of[1], 1, 5, 3, 7);
+    const Double4 cd =
+        __builtin_shufflevector(of[2], of[3], 0, 4, 2, 6) + __builtin_shufflevector(of[2], of[3], 1, 5, 3, 7);
+    return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+}
+
 }  // namespace frana

@@ -180,6 +180,7 @@ void DepthAveraged::advance(double until) {
     if (adapts) adapt_points(due, fed);
     if (exchanges) timed_("erosion", [&] { erode(dt), detrain(dt); });
     if (apart) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_velocity_dt); });
+    flow_.windows.forget();
     arrive(points);
     if (late_) enter_late();
     if (!aside_ && added_.count() > 0) enter_added();

@@ -270,11 +270,12 @@ bool Erosion::choose(const Flow& flow) {
     return any;
 }
 
-void Erosion::make_room(const Flow& flow) {
+void Erosion::make_room(Flow& flow) {
     const std::size_t count = static_cast<std::size_t>(flow.columns.count());
     for (Array* column : {&wanted_, &missed_, &speed_, &braked_, &from_x_, &from_y_}) resize_sparingly(*column, count);
     const std::size_t tiles = static_cast<std::size_t>(flow.active.count());
     sums_.assign(tiles, {}), spread_to_.resize(tiles);
+    flow.windows.start(flow.columns.count(), flow.active.count());
 }
 
 /// THEORY (72): the demand of each point, and their sum on the nodes.
@@ -304,11 +305,13 @@ void Erosion::find_demand(Flow& flow, double dt) {
 /// been left behind, that a law has not taken yet.
 template <class Law, bool kFresh>
 void Erosion::see_layer(const MeansOfFour& means, Double4 cosine, erosion::StateOf<Double4>& state) const {
-    if constexpr (kFresh) state.lies = per_area_of_flow_ * cosine * means.of(fresh_);
-    if constexpr (!Law::kSeesEroded && !Law::kSeesLeft) return;
-    const Double4 still = means.of(left_), scale = per_area_ * cosine;
-    if constexpr (Law::kSeesEroded) state.eroded = scale * (means.of(initial_) - still);
-    if constexpr (Law::kSeesLeft) state.left = scale * still + state.lies;
+    if constexpr (kFresh) state.lies = per_area_of_flow_ * cosine * means.of(fresh_)[0];
+    const Double4 scale = per_area_ * cosine;
+    if constexpr (Law::kSeesEroded) {
+        const auto [initial, still] = means.of(initial_, left_);
+        state.eroded = scale * (initial - still);
+    }
+    if constexpr (Law::kSeesLeft) state.left = scale * means.of(left_)[0] + state.lies;
 }
 
 namespace {
@@ -326,6 +329,23 @@ Double4 strengths(const Law& law, const BedStateOf<Double4>& bed, Double4 speed,
 }
 
 }  // namespace
+
+/// Moves those of four points that are chosen back by (dx, dy) [m] unless ground ends there; returns how far [cells]. Notes
+/// where all four were.
+[[gnu::always_inline]] inline Double4 Erosion::set_back(Flow& flow, Index p, int lanes, Mask4 chosen, Double4 dx,
+                                                        Double4 dy) {
+    Columns& c = flow.columns;
+    const Double4 x0 = load(&c.x[p], lanes), y0 = load(&c.y[p], lanes), none = {};
+    store(&from_x_[p], x0, lanes), store(&from_y_[p], y0, lanes);
+    const Double4 x = x0 - dx / flow.cell, y = y0 - dy / flow.cell;
+    const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
+    chosen &= (x >= 0.0) & (x <= x_max) & (y >= 0.0) & (y <= y_max);
+    if (flow.bed.has_exits)
+        for (int lane = 0; lane < lanes; ++lane)
+            if (chosen[lane] && flow.bed.exit[flow.grid.nearest(x[lane], y[lane])] != 0) chosen[lane] = 0;
+    store(&c.x[p], select(chosen, x, x0), lanes), store(&c.y[p], select(chosen, y, y0), lanes);
+    return select(chosen, max(abs(x - x0), abs(y - y0)), none);
+}
 
 /// Velocities are those of the step's momentum over the mass before it (leapfrog). In the middle of the step, where the
 /// way and the law are taken, half of the gain shares it. Such points have come too far, and are set back.
@@ -374,22 +394,6 @@ void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, con
     sums_[static_cast<std::size_t>(n)].max_shift = largest(farthest);
 }
 
-/// Moves those of four points that are chosen back by (dx, dy) [m] unless ground ends there; returns how far [cells]. Notes
-/// where all four were.
-Double4 Erosion::set_back(Flow& flow, Index p, int lanes, Mask4 chosen, Double4 dx, Double4 dy) {
-    Columns& c = flow.columns;
-    const Double4 x0 = load(&c.x[p], lanes), y0 = load(&c.y[p], lanes), none = {};
-    store(&from_x_[p], x0, lanes), store(&from_y_[p], y0, lanes);
-    const Double4 x = x0 - dx / flow.cell, y = y0 - dy / flow.cell;
-    const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
-    chosen &= (x >= 0.0) & (x <= x_max) & (y >= 0.0) & (y <= y_max);
-    if (flow.bed.has_exits)
-        for (int lane = 0; lane < lanes; ++lane)
-            if (chosen[lane] && flow.bed.exit[flow.grid.nearest(x[lane], y[lane])] != 0) chosen[lane] = 0;
-    store(&c.x[p], select(chosen, x, x0), lanes), store(&c.y[p], select(chosen, y, y0), lanes);
-    return select(chosen, max(abs(x - x0), abs(y - y0)), none);
-}
-
 /// A point that gets the share `got` < 1 of its demand was set back too far by the rest. Where it gets nothing it is
 /// where it was, to the last bit: an empty bed changes nothing.
 void Erosion::return_part(Flow& flow, Index p, double got) const {
@@ -409,29 +413,47 @@ Double4 Erosion::speeds_left(Double4 gain, Double4 braked) const {
     return min(brought, 1.0 + braked) / grown;
 }
 
+namespace {
+
+/// The window of four points of the n-th tile, not next to the grid's sides; nullptr where sub-points are too far away.
+template <class Real>
+const WindowOfFour* window_of(Flow& flow, Index p, Index n, int lanes) {
+    if (const WindowOfFour* found = flow.windows.find(p, n)) return found;
+    const Columns& c = flow.columns;
+    const Carried<Real>& held = c.carried<Real>();
+    const Domains r{load(&held.r1x[p], lanes), load(&held.r1y[p], lanes), load(&held.r2x[p], lanes),
+                    load(&held.r2y[p], lanes)};
+    WindowOfFour& window = flow.windows.at(p, n);
+    if (!find_window(flow, load(&c.x[p], lanes), load(&c.y[p], lanes), r, window)) return nullptr;
+    flow.windows.know(p, n, true);
+    return &window;
+}
+
+}  // namespace
+
 /// Adds numbers of points to nodes as their columns are: by sub-points.
 template <class Real>
-void Erosion::spread(const Flow& flow, Index n, const Array& masses, LazyArray<double>& into) {
+void Erosion::spread(Flow& flow, Index n, const Array& masses, LazyArray<double>& into) {
     const Columns& c = flow.columns;
     const Carried<Real>& held = c.carried<Real>();
     StencilMarks marks = flow.marks_of(flow.active.tile[n]);
     const bool at_side = !flow.walls && near_side(flow.grid, flow.active.tile[n]);
+    const Index stride = flow.grid.stride();
     for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
         const Double4 m = load(&masses[p], lanes), none = {};
         if (!any(m > none)) return;
-        const Domains r{load(&held.r1x[p], lanes), load(&held.r1y[p], lanes), load(&held.r2x[p], lanes),
-                        load(&held.r2y[p], lanes)};
         const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes);
         marks.mark(floor_positive(x + (kTile - 0.5)), floor_positive(y + (kTile - 0.5)), lanes);
-        if (!at_side && spread_four(flow, into.data(), lanes, x, y, m, r)) return;
+        const WindowOfFour* const window = at_side ? nullptr : window_of<Real>(flow, p, n, lanes);
+        if (window) return spread_window(stride, into.data(), lanes, m, *window);
         for (Index q = p; q < p + lanes; ++q)
             spread_column<Quadratic>(flow, into.data(), {c.x[q], c.y[q], masses[q]}, edges_of(held, q));
     });
     spread_to_[static_cast<std::size_t>(n)] = marks.reach(kReachBefore, kReachAfter);
 }
 
-template void Erosion::spread<double>(const Flow&, Index, const Array&, LazyArray<double>&);
-template void Erosion::spread<float>(const Flow&, Index, const Array&, LazyArray<double>&);
+template void Erosion::spread<double>(Flow&, Index, const Array&, LazyArray<double>&);
+template void Erosion::spread<float>(Flow&, Index, const Array&, LazyArray<double>&);
 
 /// The nodes that the chosen tiles' points gave something to. At walls all: mirror particles give too.
 void Erosion::collect_reach(const Flow& flow) {
@@ -513,9 +535,9 @@ bool all_usual(const Flow& flow, const LazyArray<double>& share, double usual, D
 
 /// Calls take(p, number) for the points of a tile that have a demand. The number is what of_window finds on the shares
 /// of the window's nodes. Where sub-points lie too far away for a window, it is that of of_point(p, edges). Among nodes
-/// of the usual share it is that share.
+/// of the usual share it is that share. take says whether it moved the point.
 template <class Real, class OfWindow, class OfPoint, class Take>
-void for_each_wanting(const Flow& flow, Index n, const Array& wanted, const LazyArray<double>& share, double usual,
+void for_each_wanting(Flow& flow, Index n, const Array& wanted, const LazyArray<double>& share, double usual,
                       OfWindow&& of_window, OfPoint&& of_point, Take&& take) {
     const Columns& c = flow.columns;
     const Carried<Real>& held = c.carried<Real>();
@@ -525,28 +547,24 @@ void for_each_wanting(const Flow& flow, Index n, const Array& wanted, const Lazy
         const Double4 none = {};
         if (!any(load(&wanted[p], lanes) > none)) return;
         const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes);
-        if (!at_side && all_usual(flow, share, usual, x, y, lanes)) {
-            for (Index q = p; q < p + lanes; ++q)
-                if (wanted[q] > 0.0) take(q, usual);
-            return;
-        }
-        const Domains r{load(&held.r1x[p], lanes), load(&held.r1y[p], lanes), load(&held.r2x[p], lanes),
-                        load(&held.r2y[p], lanes)};
-        WindowOfFour window;
-        const bool near = !at_side && find_window(flow, x, y, r, window);
-        for (int lane = 0; lane < lanes; ++lane) {
-            const Index q = p + lane;
-            if (!(wanted[q] > 0.0)) continue;
-            const double* row = near ? share.data() + window.j[lane] * stride + window.i[lane] : nullptr;
-            take(q, near ? of_window(window, lane, row) : of_point(q, edges_of(held, q)));
-        }
+        const bool alike = !at_side && all_usual(flow, share, usual, x, y, lanes);
+        const WindowOfFour* const window = alike || at_side ? nullptr : window_of<Real>(flow, p, n, lanes);
+        const auto number = [&](Index q, int lane) {
+            if (alike) return usual;
+            if (!window) return of_point(q, edges_of(held, q));
+            return of_window(*window, lane, share.data() + window->j[lane] * stride + window->i[lane]);
+        };
+        bool moved = false;
+        for (int lane = 0; lane < lanes; ++lane)
+            if (wanted[p + lane] > 0.0) moved = take(p + lane, number(p + lane, lane)) || moved;
+        if (moved) flow.windows.know(p, n, false);
     });
 }
 
 }  // namespace
 
 template <class Real>
-void Erosion::take_shares(const Flow& flow, Index n) {
+void Erosion::take_shares(Flow& flow, Index n) {
     for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) missed_[p] = 0.0;
     const auto of_window = [&](const WindowOfFour& window, int lane, const double* row) {
         Double4 least = all(1.0);
@@ -565,8 +583,10 @@ void Erosion::take_shares(const Flow& flow, Index n) {
             });
         return least;
     };
-    for_each_wanting<Real>(flow, n, wanted_, share_, 1.0, of_window, of_point,
-                           [&](Index p, double least) { missed_[p] = wanted_[p] - least * wanted_[p]; });
+    for_each_wanting<Real>(flow, n, wanted_, share_, 1.0, of_window, of_point, [&](Index p, double least) {
+        missed_[p] = wanted_[p] - least * wanted_[p];
+        return false;
+    });
 }
 
 template <class Real>
@@ -591,6 +611,7 @@ void Erosion::take_left_over(Flow& flow, Index n) {
         const double wanted = wanted_[p], gets = (wanted - missed_[p]) + mean * wanted;
         wanted_[p] = gets;
         if (gets < wanted) return_part(flow, p, gets / wanted);
+        return gets < wanted;
     });
 }
 

@@ -80,9 +80,9 @@ private:
     template <class Law, bool kFresh>
     void see_layer(const MeansOfFour& means, Double4 cosine, erosion::StateOf<Double4>& state) const;
     template <class Real>
-    void spread(const Flow& flow, Index n, const Array& masses, LazyArray<double>& into);
+    void spread(Flow& flow, Index n, const Array& masses, LazyArray<double>& into);
     template <class Real>
-    void take_shares(const Flow& flow, Index n);
+    void take_shares(Flow& flow, Index n);
     template <class Real>
     void take_left_over(Flow& flow, Index n);
     template <class Real>
@@ -118,7 +118,7 @@ private:
                          const std::vector<Index>& tiles);
     void serialize_deposition(Archive& archive, const Flow& flow);
     bool choose(const Flow& flow);
-    void make_room(const Flow& flow);
+    void make_room(Flow& flow);
     void find_demand(Flow& flow, double dt);
     bool find_shares(Flow& flow);
     void share_out(Flow& flow);

@@ -13,27 +13,35 @@ class MeansOfFour {
 public:
     [[gnu::always_inline]] MeansOfFour(const TileGrid& grid, Double4 x, Double4 y) : stride_(grid.stride()) {
         const Stencils sx(x), sy(y);
-        for (int lane = 0; lane < 4; ++lane) node_[lane] = sy.first[lane] * stride_ + sx.first[lane];
-        transpose(sx.w[0], sx.w[1], sx.w[2], Double4{}, along_);
-        for (int j = 0; j < 3; ++j) across_[j] = sy.w[j];
-    }
-    /// Where there are fewer than four points, the other lanes have numbers of the grid's first node.
-    [[gnu::always_inline]] Double4 of(const LazyArray<double>& nodes) const {
-        Double4 rows[4], parts[4];
+        Double4 along[4];
+        transpose(sx.w[0], sx.w[1], sx.w[2], Double4{}, along);
         for (int lane = 0; lane < 4; ++lane) {
-            const double* row = nodes.data() + node_[lane];
-            const Double4 sum = (across_[0][lane] * load(row) + across_[1][lane] * load(row + stride_)) +
-                                across_[2][lane] * load(row + 2 * stride_);
-            rows[lane] = along_[lane] * sum;
+            node_[lane] = sy.first[lane] * stride_ + sx.first[lane];
+            for (int j = 0; j < 3; ++j) weights_[lane][j] = sy.w[j][lane] * along[lane];
         }
-        transpose(rows[0], rows[1], rows[2], rows[3], parts);
-        return parts[0] + parts[1] + parts[2];
+    }
+    /// Of some arrays at once. Where there are fewer than four points, the other lanes have numbers of the grid's first
+    /// node.
+    template <class... Nodes>
+    [[gnu::always_inline]] std::array<Double4, sizeof...(Nodes)> of(const Nodes&... nodes) const {
+        constexpr std::size_t kCount = sizeof...(Nodes);
+        const double* const first[kCount] = {nodes.data()...};
+        Double4 rows[kCount][4];
+        for (int lane = 0; lane < 4; ++lane) {
+            const Double4 a = weights_[lane][0], b = weights_[lane][1], c = weights_[lane][2];
+            for (std::size_t n = 0; n < kCount; ++n) {
+                const double* row = first[n] + node_[lane];
+                rows[n][lane] = (a * load(row) + b * load(row + stride_)) + c * load(row + 2 * stride_);
+            }
+        }
+        std::array<Double4, kCount> means;
+        for (std::size_t n = 0; n < kCount; ++n) means[n] = sums_of_each(rows[n]);
+        return means;
     }
 
 private:
     Index stride_, node_[4];
-    Double4 along_[4];
-    Double4 across_[3];
+    Double4 weights_[4][3];  ///< of a point, of a row: three nodes, and zero
 };
 
 /// The bed law's input below four points, and their speed along it; on gentle ground that of the map.
@@ -44,10 +52,15 @@ struct GroundOfFour {
                                         Double4 depth) {
         const Double4 one = all(1.0), none = {};
         Double4 bx = none, by = none, gravity = all(flow.gravity);
-        if (flow.steep) bx = means.of(flow.bed.slope_x), by = means.of(flow.bed.slope_y);
-        if (curved)
-            gravity = max(none, gravity + vx * vx * means.of(flow.bed.hxx) + 2.0 * vx * vy * means.of(flow.bed.hxy) +
-                                    vy * vy * means.of(flow.bed.hyy));
+        const BedGeometry& bed = flow.bed;
+        if (curved) {
+            const auto [sx, sy, hxx, hxy, hyy] = means.of(bed.slope_x, bed.slope_y, bed.hxx, bed.hxy, bed.hyy);
+            bx = sx, by = sy;
+            gravity = max(none, gravity + vx * vx * hxx + 2.0 * vx * vy * hxy + vy * vy * hyy);
+        } else if (flow.steep) {
+            const auto [sx, sy] = means.of(bed.slope_x, bed.slope_y);
+            bx = sx, by = sy;
+        }
         const Double4 on_map2 = vx * vx + vy * vy, rise = vx * bx + vy * by;
         const Double4 kappa = sqrt(one + rise * rise / on_map2), cosine = one / sqrt(one + bx * bx + by * by);
         speed = kappa * sqrt(on_map2);

@@ -21,12 +21,6 @@ struct Domains {
     if (any(~wide)) leave_spanned(r.r1x, r.r1y, r.r2x, r.r2y, cxx, cxy, cyx, cyy);
 }
 
-/// Where the sub-points of four points spread: weights of the four by four nodes that hold all of a point's.
-struct WindowOfFour {
-    Int4 i, j;              ///< first nodes, counted from the storage's first
-    Double4 of_lane[4][4];  ///< of a row, of a point: the weights of four nodes, 256 in all
-};
-
 /// Fills `window`, for points none of whose sub-points is farther than half a cell away. Otherwise does nothing, and returns
 /// false.
 [[gnu::always_inline]] inline bool find_window(const Flow& flow, Double4 x, Double4 y, const Domains& r,
@@ -58,18 +52,22 @@ struct WindowOfFour {
 
 constexpr double kOfWindow = 1.0 / 256.0;  ///< a sub-point has a quarter, and weights come eightfold in each direction
 
-/// Spreads the sub-points of four points of masses m, unless some is too far away: then returns false.
-/// `into`: an array on the grid's storage.
-[[gnu::always_inline]] inline bool spread_four(const Flow& flow, double* into, int lanes, Double4 x, Double4 y,
-                                               Double4 m, const Domains& r) {
-    WindowOfFour window;
-    if (!find_window(flow, x, y, r, window)) return false;
-    const Index stride = flow.grid.stride();
+/// Spreads masses m of four points. `into`: an array on the grid's storage.
+[[gnu::always_inline]] inline void spread_window(Index stride, double* into, int lanes, Double4 m,
+                                                 const WindowOfFour& window) {
     const Double4 share = kOfWindow * m;
     for (int lane = 0; lane < lanes; ++lane) {
         double* row = into + window.j[lane] * stride + window.i[lane];
         for (int b = 0; b < 4; ++b, row += stride) store(row, load(row) + share[lane] * window.of_lane[b][lane]);
     }
+}
+
+/// The same by their sub-points, unless some is too far away: then returns false.
+[[gnu::always_inline]] inline bool spread_four(const Flow& flow, double* into, int lanes, Double4 x, Double4 y,
+                                               Double4 m, const Domains& r) {
+    WindowOfFour window;
+    if (!find_window(flow, x, y, r, window)) return false;
+    spread_window(flow.grid.stride(), into, lanes, m, window);
     return true;
 }
 

@@ -36,7 +36,7 @@ public:
             Sums sums;
             StencilMarks marks = flow.marks_of(tile);
             for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
-                deposit_batch(flow, first, end, cap, at_side, marks, sums);
+                deposit_batch(flow, n, first, end, cap, at_side, marks, sums);
             });
             flow.reach[tile] = marks.reach(kReachBefore, kReachAfter);
             deposited_[tile] = sums.points();
@@ -72,7 +72,7 @@ public:
             StencilMarks marks = flow.marks_of(tile);
             for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
                 gather_batch(flow, first, end, dt, moved);
-                if (moved.rare.bad < 0) deposit_batch(flow, first, end, cap, at_side, marks, deposited);
+                if (moved.rare.bad < 0) deposit_batch(flow, n, first, end, cap, at_side, marks, deposited);
             });
             flow.reach[tile] = marks.reach(kReachBefore, kReachAfter);
             deposited_[tile] = deposited.points();
@@ -182,7 +182,7 @@ private:
     }
 
     /// Stresses first: a chain of divisions and roots that points wait for side by side.
-    [[gnu::noinline]] void deposit_batch(Flow& flow, Index first, Index end, double cap, bool at_side,
+    [[gnu::noinline]] void deposit_batch(Flow& flow, Index n, Index first, Index end, double cap, bool at_side,
                                          StencilMarks& marks, Sums& sums) {
         PlaneOf<Double4> internal_force[kBatch / 4];
         if constexpr (kStress) {
@@ -190,18 +190,27 @@ private:
             for_each_four(first, end, [&](Index p, int lanes) { shear[(p - first) / 4] = shear_of(flow, p, lanes); });
             with_rheology_of(law_, flow.rheologies, [&](const auto& rheology) {
                 for_each_four(first, end, [&](Index p, int lanes) {
-                    const Index n = (p - first) / 4;
-                    internal_force[n] = internal_force_of(rheology, flow, p, lanes, shear[n], cap, sums);
+                    const Index four = (p - first) / 4;
+                    internal_force[four] = internal_force_of(rheology, flow, p, lanes, shear[four], cap, sums);
                 });
             });
         }
         for_each_four(first, end, [&](Index p, int lanes) {
-            deposit_four(flow, p, lanes, internal_force[(p - first) / 4], at_side, marks, sums);
+            deposit_four(flow, p, lanes, internal_force[(p - first) / 4], marks, sums);
+        });
+        const bool some_known = flow.windows.any_known();
+        for_each_four(first, end, [&](Index p, int lanes) {
+            const WindowOfFour* const window = some_known ? flow.windows.find(p, n) : nullptr;
+            if (window)
+                spread_window(flow.grid.stride(), flow.nodes.column_mass.data(), lanes,
+                              load(&flow.columns.mass[p], lanes), *window);
+            else
+                deposit_columns(flow, p, lanes, at_side);
         });
     }
 
-    void deposit_four(Flow& flow, Index p, int lanes, const PlaneOf<Double4>& internal_force, bool at_side,
-                      StencilMarks& marks, Sums& sums) {
+    void deposit_four(Flow& flow, Index p, int lanes, const PlaneOf<Double4>& internal_force, StencilMarks& marks,
+                      Sums& sums) {
         const Columns& c = flow.columns;
         const Carried<Real>& held = c.carried<Real>();
         const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes), m = load(&c.mass[p], lanes);
@@ -216,7 +225,6 @@ private:
         scatter_four(flow.nodes, flow.grid.stride(), lanes, sx, sy, {m, px, py, mc * cxx, mc * cxy, mc * cyx, mc * cyy},
                      internal_force);
         marks.mark(sx.first, sy.first, lanes);
-        deposit_columns(flow, p, lanes, x, y, m, {r1x, r1y, r2x, r2y}, at_side);
         sums.mass += m;
         sums.px += px;
         sums.py += py;
@@ -224,9 +232,14 @@ private:
     }
 
     /// Those that lie farther from their points than half a cell, or next to the grid's sides, one by one.
-    static void deposit_columns(Flow& flow, Index p, int lanes, Double4 x, Double4 y, Double4 m, const Domains& r,
-                                bool at_side) {
-        if (!at_side && spread_four(flow, flow.nodes.column_mass.data(), lanes, x, y, m, r)) return;
+    static void deposit_columns(Flow& flow, Index p, int lanes, bool at_side) {
+        const Columns& c = flow.columns;
+        const Carried<Real>& held = c.carried<Real>();
+        const Domains r{load(&held.r1x[p], lanes), load(&held.r1y[p], lanes), load(&held.r2x[p], lanes),
+                        load(&held.r2y[p], lanes)};
+        if (!at_side && spread_four(flow, flow.nodes.column_mass.data(), lanes, load(&c.x[p], lanes),
+                                    load(&c.y[p], lanes), load(&c.mass[p], lanes), r))
+            return;
         for (int lane = 0; lane < lanes; ++lane) deposit_quadratic_sub_points<Real>(flow, p + lane);
     }
 
