@@ -535,6 +535,7 @@ void BarrierWatch::note_start(const Mpm3d& flow) {
             const double volume = points.mass[p] / density_, half = 0.5 * std::cbrt(volume);
             if (std::isfinite(top_of(solid, x.head<2>())) || (met && met->distance <= ramp_ + half))
                 at_start_[n] += volume;
+            if (met && met->distance <= 2.0 * half) due_[n] = flow.status().time;  // as near as rows of points lie
         }
     }
     sample(flow);
@@ -579,7 +580,7 @@ void BarrierWatch::accumulate_loads(const Mpm3d& flow) {
 
 /// Nodes exert force on what is still a cell away, and so slow down what comes fast. So a point touches at the time of
 /// its undisturbed arrival, when it is no farther than half a cell. At the latest it touches when half of its width is
-/// left.
+/// left. What stands at the barrier as points begin touches as soon as it presses.
 bool BarrierWatch::is_touched(std::size_t n, const Mpm3d& flow) {
     const auto has_impulse = [](const FaceLoad& face) { return !face.impulse.isZero(0.0); };
     const std::vector<FaceLoad>& faces = loads_.barriers[n].faces;
