@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "coupling/solid_scene.h"
 #include "particles/bed_points.h"
+#include "shallow/feed.h"
 #include "solid3d/face_ledger.h"
 #include "terrain/outline_nodes.h"
 #include "terrain/part_of.h"
@@ -323,6 +324,18 @@ ColumnWatch::ColumnWatch(const Scene& scene) : grid_(scene.bed.geometry), cell_(
     for (const Seeds* seeds : scene.all_particles())
         for (std::size_t p = 0; p < seeds->x.size(); ++p)
             if (is_on_top({seeds->x[p], seeds->y[p]})) placed_ += seeds->volume[p];
+    note_inflows(scene);
+}
+
+void ColumnWatch::note_inflows(const Scene& scene) {
+    if (scene.inflows.empty()) return;
+    const auto all = Feed(scene.inflows).entries(scene.end);
+    for (std::size_t n = 0; n < all.size(); ++n) {
+        double volume = 0.0;
+        for (const Feed::Entry& entry : all[n])
+            if (is_on_top(entry.at)) volume += entry.volume;
+        if (volume > 0.0) enter_.push_back({scene.inflows[n].name, volume});
+    }
 }
 
 bool ColumnWatch::is_on_top(const Vec2& place) const {
@@ -332,11 +345,18 @@ bool ColumnWatch::is_on_top(const Vec2& place) const {
 }
 
 std::vector<std::string> ColumnWatch::remarks() const {
-    if (!(placed_ > 0.0)) return {};
-    return {fmt::format(
-        "barriers: found {:.4g} m3 of releases on top of barriers; expected none, since it falls from there; move "
-        "the outlines apart",
-        placed_)};
+    std::vector<std::string> all;
+    if (placed_ > 0.0)
+        all.push_back(fmt::format(
+            "barriers: found {:.4g} m3 of releases on top of barriers; expected none, since it falls from there; move "
+            "the outlines apart",
+            placed_));
+    for (const Entering& entering : enter_)
+        all.push_back(fmt::format(
+            "inflow {}: found {:.4g} m3 of it that enter on top of barriers; expected none, since it falls from there; "
+            "move it off their outlines",
+            entering.inflow, entering.volume));
+    return all;
 }
 
 void ColumnWatch::inherit(Index child, Index parent) {
