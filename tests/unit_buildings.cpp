@@ -92,6 +92,21 @@ TEST_CASE("Each house has the height of its feature, up to 500 m", "[scene][barr
     }
 }
 
+TEST_CASE("A top below all ground of its outline is told, wherever the corners are", "[scene][barriers]") {
+    FakeGis gis = slope_gis();
+    gis.polygons["houses.gpkg"] = rectangle(1100, 1990, 1120, 2160);  // across the terrain, from beyond it to beyond
+    const std::string buried = "nothing meets it";
+    CHECK(says(scene_of(with_houses("top = 140\n"), gis), buried));  // the ground is 148.75 m there and higher
+    CHECK_FALSE(says(scene_of(with_houses("top = 150\n"), gis), buried));
+    gis.polygons["houses.gpkg"] = rectangle(1100, 2010, 1120, 2130);
+    CHECK(says(scene_of(with_houses("top = 140\n"), gis), buried));
+    gis.rasters["dem.tif"] =  // corners stand on high ground, the middle in a gully
+        sampled({40, 30, 1002.5, 2002.5, 5.0}, [](double x, double y) {
+            return 100.0 + 0.5 * (x - 1000.0) - (std::abs(y - 2070.0) < 10.0 ? 30.0 : 0.0);
+        });
+    CHECK_FALSE(says(scene_of(with_houses("top = 140\n"), gis), buried));
+}
+
 TEST_CASE("Houses beyond the terrain are left out with a remark, the others keep their numbers", "[scene][barriers]") {
     FakeGis gis = slope_gis();
     gis.polygons["houses.gpkg"] = village(3, 12, 17);
