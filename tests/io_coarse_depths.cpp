@@ -83,7 +83,7 @@ TEST_CASE("Below a surface on pixels of the elevation model lies what its pixels
     CHECK(*std::max_element(seeds.depth.begin(), seeds.depth.end()) == Approx(kBlockDepth).epsilon(4e-6));
 }
 
-// Pixels have 24 bits. Waves are between their pixels' values, and a part of a terrain has the same depths as all of it.
+// Pixels have 24 bits. Waves are between their values, and a part of a terrain has the same depths as all of it.
 TEST_CASE("A wave of loose ground stays within its pixels, which keep their volume", "[erosion][scene]") {
     const CoarseFiles files;
     const auto wave = [](double x, double y) { return 2.0 + std::sin(0.06 * x) * std::cos(0.1 * y); };
