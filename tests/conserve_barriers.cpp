@@ -617,6 +617,44 @@ TEST_CASE("A barrier's mean force does not depend on a short blow", "[barrier]")
     CHECK(read.column("f0x").back() == Approx(2.0));
 }
 
+// Nodes press from a cell away: the blow comes up to a cell's travel before the material.
+TEST_CASE("What presses on a barrier before its first contact is counted, and dated to it", "[barrier]") {
+    const FreshFolder scratch;
+    std::vector<BarrierSummary> summaries;
+    Barriers table(scratch.path(), {{"dam", {0.01, 0.5}}}, summaries);
+    Pushed probe;
+    Status now;
+    table.step(now, probe);
+    // A blow of 100 N up to 0.01 s, then a steady 2 N. The material is there at 0.05 s.
+    for (int step = 1; step <= 300; ++step) {
+        now.time = 0.01 * step;
+        probe.state.barriers[0].faces[0].impulse.x() += 0.01 * (step == 1 ? 100.0 : 2.0);
+        probe.state.barriers[0].touched = step >= 5;
+        table.step(now, probe);
+    }
+    const BarrierSummary& dam = summaries.at(0);
+    CHECK(dam.first_contact == Approx(0.05));
+    CHECK(dam.means.at(0).largest == Approx(100.0));
+    CHECK(dam.means.at(0).time == dam.first_contact);
+    CHECK(dam.means.at(1).largest == Approx((1.0 + 2.0 * 0.49) / 0.5));
+    CHECK(dam.means.at(1).time == Approx(0.5));  // later ones are dated as they were felt
+}
+
+TEST_CASE("What leans on a barrier from the start touches it as it presses", "[barrier]") {
+    Scene scene = channel(4.0);
+    scene.particles = {};
+    fill(scene, [](double x, double) { return x < 10.0 ? 1.0 : 0.0; });
+    StagedRun run(scene);
+    run_to(run, 0.02);
+    REQUIRE(run.loads() != nullptr);
+    CHECK(run.loads()->barriers.at(0).touched);
+    scene.particles = {};
+    fill(scene, [](double x, double) { return x < 9.0 ? 1.0 : 0.0; });  // a metre away
+    StagedRun apart(scene);
+    run_to(apart, 0.02);
+    CHECK_FALSE(apart.loads()->barriers.at(0).touched);
+}
+
 TEST_CASE("A barrier's largest means are those of its windows, with force and moment then", "[barrier]") {
     const FreshFolder scratch;
     std::vector<BarrierSummary> summaries;

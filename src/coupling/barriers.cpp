@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "coupling/solid_scene.h"
 #include "particles/bed_points.h"
+#include "shallow/feed.h"
 #include "solid3d/face_ledger.h"
 #include "terrain/outline_nodes.h"
 #include "terrain/part_of.h"
@@ -323,6 +324,18 @@ ColumnWatch::ColumnWatch(const Scene& scene) : grid_(scene.bed.geometry), cell_(
     for (const Seeds* seeds : scene.all_particles())
         for (std::size_t p = 0; p < seeds->x.size(); ++p)
             if (is_on_top({seeds->x[p], seeds->y[p]})) placed_ += seeds->volume[p];
+    note_inflows(scene);
+}
+
+void ColumnWatch::note_inflows(const Scene& scene) {
+    if (scene.inflows.empty()) return;
+    const auto all = Feed(scene.inflows).entries(scene.end);
+    for (std::size_t n = 0; n < all.size(); ++n) {
+        double volume = 0.0;
+        for (const Feed::Entry& entry : all[n])
+            if (is_on_top(entry.at)) volume += entry.volume;
+        if (volume > 0.0) enter_.push_back({scene.inflows[n].name, volume});
+    }
 }
 
 bool ColumnWatch::is_on_top(const Vec2& place) const {
@@ -332,11 +345,18 @@ bool ColumnWatch::is_on_top(const Vec2& place) const {
 }
 
 std::vector<std::string> ColumnWatch::remarks() const {
-    if (!(placed_ > 0.0)) return {};
-    return {fmt::format(
-        "barriers: found {:.4g} m3 of releases on top of barriers; expected none, since it falls from there; move "
-        "the outlines apart",
-        placed_)};
+    std::vector<std::string> all;
+    if (placed_ > 0.0)
+        all.push_back(fmt::format(
+            "barriers: found {:.4g} m3 of releases on top of barriers; expected none, since it falls from there; move "
+            "the outlines apart",
+            placed_));
+    for (const Entering& entering : enter_)
+        all.push_back(fmt::format(
+            "inflow {}: found {:.4g} m3 of it that enter on top of barriers; expected none, since it falls from there; "
+            "move it off their outlines",
+            entering.inflow, entering.volume));
+    return all;
 }
 
 void ColumnWatch::inherit(Index child, Index parent) {
@@ -535,6 +555,7 @@ void BarrierWatch::note_start(const Mpm3d& flow) {
             const double volume = points.mass[p] / density_, half = 0.5 * std::cbrt(volume);
             if (std::isfinite(top_of(solid, x.head<2>())) || (met && met->distance <= ramp_ + half))
                 at_start_[n] += volume;
+            if (met && met->distance <= 2.0 * half) due_[n] = flow.status().time;  // as near as rows of points lie
         }
     }
     sample(flow);
@@ -579,7 +600,7 @@ void BarrierWatch::accumulate_loads(const Mpm3d& flow) {
 
 /// Nodes exert force on what is still a cell away, and so slow down what comes fast. So a point touches at the time of
 /// its undisturbed arrival, when it is no farther than half a cell. At the latest it touches when half of its width is
-/// left.
+/// left. What stands at the barrier as points begin touches as soon as it presses.
 bool BarrierWatch::is_touched(std::size_t n, const Mpm3d& flow) {
     const auto has_impulse = [](const FaceLoad& face) { return !face.impulse.isZero(0.0); };
     const std::vector<FaceLoad>& faces = loads_.barriers[n].faces;

@@ -109,12 +109,17 @@ public:
     /// A round over all columns, of a material of that density [kg/m3].
     void sample_columns(const DepthAveraged& columns, double density);
     const BarrierLoads& loads() const { return loads_; }
-    /// Of what a scene places on barriers.
+    /// Of what a scene places on barriers, or lets in there.
     std::vector<std::string> remarks() const;
     void serialize(Archive& archive);
 
 private:
+    struct Entering {
+        std::string inflow;
+        double volume;  ///< on top of barriers, by the end of the run [m3]
+    };
     void make_room(std::size_t id);
+    void note_inflows(const Scene& scene);
     /// Whether a place is on top of a barrier.
     bool is_on_top(const Vec2& place) const;
     /// Whether a barrier raises the bed at a node.
@@ -135,8 +140,9 @@ private:
     GridGeometry grid_;          ///< that barriers were found on; that of the columns may have grown
     std::vector<Index> raised_;  ///< nodes of it that barriers raise, ascending
     double cell_;
-    double placed_ = 0.0;  ///< of releases, on top of barriers [m3]
-    double moved_ = 0.0;   ///< farthest way of a column since the last round [m]
+    double placed_ = 0.0;          ///< of releases, on top of barriers [m3]
+    std::vector<Entering> enter_;  ///< of inflows that enter there
+    double moved_ = 0.0;           ///< farthest way of a column since the last round [m]
 };
 
 /// What 3D points do to barriers.

@@ -436,6 +436,8 @@ void StagedRun::remark_walls(std::vector<std::string>& remarks) const {
 std::vector<std::string> StagedRun::remarks() const {
     std::vector<std::string> remarks = columns_->remarks();
     for (std::string& remark : remarks_on(footings_)) remarks.push_back(std::move(remark));
+    if (columns_watch_)
+        for (std::string& remark : columns_watch_->remarks()) remarks.push_back(std::move(remark));
     if (!points_) return remarks;
     remark_walls(remarks);
     if (watch_)

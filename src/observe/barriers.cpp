@@ -93,13 +93,21 @@ void Barriers::step(const Status& now, const Probe& probe) {
                moment[1], moment[2], mean,     load.run_up, load.overtopped};
         row.insert(row.end(), faces.begin(), faces.end());
         tables_[n].add(row);
-        if (summary.first_contact < 0.0 && load.touched) summary.first_contact = now.time;
         if (mean > summary.peak_force) summary.peak_force = mean, summary.peak_force_time = now.time;
+        if (summary.first_contact < 0.0 && load.touched) note_contact(summary, now.time);
         summary.raw_peak_force = std::max(summary.raw_peak_force, force.head<2>().norm());
         summary.blur = loads->blur;
         summary.impulse = all.impulse;
         take(n, load);
     }
+}
+
+/// What pressed before is the blow of this contact, felt from a cell away: no mean ends before it.
+void Barriers::note_contact(BarrierSummary& summary, double time) {
+    summary.first_contact = time;
+    if (summary.peak_force > 0.0) summary.peak_force_time = time;
+    for (MeanForce& mean : summary.means)
+        if (mean.largest > 0.0) mean.time = time;
 }
 
 /// What is known of columns too.

@@ -15,11 +15,12 @@ struct NamedBarrier {
     std::vector<double> windows;
 };
 
-/// The largest horizontal force on a barrier as a mean over a time. Before the start there is no force.
+/// The largest horizontal force on a barrier as a mean over a time. Before the start there is no force. Nodes press
+/// for what is a cell away. What they did before the first contact is counted in full, and dated to that.
 struct MeanForce {
     double window = 0.0;   ///< [s]
     double largest = 0.0;  ///< [N]
-    double time = 0.0;     ///< end of the time that it is the mean of [s]
+    double time = 0.0;     ///< end of the time that it is the mean of, or the first contact if that is later [s]
     Vec3 force{0, 0, 0};   ///< then [N]
     Vec3 moment{0, 0, 0};  ///< then, about BarrierSummary::about [N m]
 };
@@ -30,7 +31,7 @@ struct BarrierSummary {
     double first_contact =
         -1.0;                 ///< [s]; -1: never. When points are at a face or, with columns alone, by the depth there
     double peak_force = 0.0;  ///< largest horizontal force, mean over `blur` [N]
-    double peak_force_time = 0.0;  ///< end of that interval [s]
+    double peak_force_time = 0.0;  ///< end of that interval, or the first contact if that is later [s]
     double raw_peak_force = 0.0;   ///< largest of a single step: as hard as the artificial sound is fast [N]
     double blur = 0.0;             ///< [s]
     Vec3 impulse{0, 0, 0};         ///< since the start [kg m/s]
@@ -84,6 +85,7 @@ private:
     void step_without_forces(const BarrierLoads& loads);
     void step_without_force(std::size_t n, double time, const BarrierLoad& load);
     void take(std::size_t n, const BarrierLoad& load);
+    static void note_contact(BarrierSummary& summary, double time);
     void serialize_without_tables(Archive& archive);
     static double note_means(Watched& watched, const Received& now, double blur, std::vector<MeanForce>& means);
     static MeanForce mean_over(const Watched& watched, double window);

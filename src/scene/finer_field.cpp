@@ -44,6 +44,43 @@ double between(const Raster& field, Index i, Index j, double u, double v) {
            fu * fv * depth(i + di, j + dj);
 }
 
+/// The depths of the parts of pixel (i, j) that are `u` and `v` pixels from its middle, row after row. Their mean is
+/// the pixel's own depth.
+std::vector<double> parts_of(const Raster& field, Index i, Index j, const std::vector<double>& u,
+                             const std::vector<double>& v) {
+    std::vector<double> parts;
+    double sum = 0.0;
+    for (const double b : v)
+        for (const double a : u) sum += parts.emplace_back(between(field, i, j, a, b));
+    const double own = field.at(i, j);
+    const double keep = own * double(parts.size()) / sum;  // the pixel's volume stays the same
+    double lowest = own, highest = own;
+    for (double& depth : parts) {
+        depth *= keep;
+        lowest = std::min(lowest, depth), highest = std::max(highest, depth);
+    }
+    const double share = share_within(range_around(field, i, j), own, lowest, highest);
+    if (share < 1.0)
+        for (double& depth : parts) depth = own + share * (depth - own);
+    return parts;
+}
+
+/// Nodes of a row that lie in a pixel, and where [pixels from its middle]. Those beyond the row count too: a part of a
+/// terrain then has the same depths as all of it.
+struct NodesInPixel {
+    Index first;
+    std::vector<double> places;
+    NodesInPixel(double middle, double size, double start, double cell) {
+        constexpr double kRoundOff = 1e-9;
+        const auto after = [&](double edge) {
+            return static_cast<Index>(std::ceil((edge - start) / cell - kRoundOff));
+        };
+        first = after(middle - 0.5 * size);
+        for (Index n = first; n < after(middle + 0.5 * size); ++n)
+            places.push_back((start + static_cast<double>(n) * cell - middle) / size);
+    }
+};
+
 }  // namespace
 
 Raster finer_field(const Raster& field, double cell) {
@@ -56,29 +93,41 @@ Raster finer_field(const Raster& field, double cell) {
     Raster result = Raster::filled({g.nx * parts, g.ny * parts, g.x0 + first, g.y0 + first, fine}, Raster::nodata);
     result.crs_wkt = field.crs_wkt;
     result.source = field.source;
+    std::vector<double> places;
+    for (Index n = 0; n < parts; ++n) places.push_back((first + double(n) * fine) / g.cell);
     for (Index j = 0; j < g.ny; ++j)
         for (Index i = 0; i < g.nx; ++i) {
             if (!(field.at(i, j) > 0.0)) continue;
-            double sum = 0.0;
-            const auto each = [&](auto&& use) {
-                for (Index b = 0; b < parts; ++b)
-                    for (Index a = 0; a < parts; ++a) use(a, b, result.at(i * parts + a, j * parts + b));
-            };
-            const auto place = [&](Index n) { return (first + double(n) * fine) / g.cell; };
-            each([&](Index a, Index b, double& depth) {
-                depth = between(field, i, j, place(a), place(b));
-                sum += depth;
-            });
-            const double own = field.at(i, j);
-            const double keep = own * double(parts * parts) / sum;  // the pixel's volume stays the same
-            double lowest = own, highest = own;
-            each([&](Index, Index, double& depth) {
-                depth *= keep;
-                lowest = std::min(lowest, depth), highest = std::max(highest, depth);
-            });
-            const double share = share_within(range_around(field, i, j), own, lowest, highest);
-            if (share < 1.0) each([&](Index, Index, double& depth) { depth = own + share * (depth - own); });
+            const std::vector<double> depths = parts_of(field, i, j, places, places);
+            for (std::size_t k = 0; k < depths.size(); ++k) {
+                const auto n = static_cast<Index>(k);
+                result.at(i * parts + n % parts, j * parts + n / parts) = depths[k];
+            }
         }
+    return result;
+}
+
+Raster on_closer_nodes(const Raster& field, const GridGeometry& grid) {
+    const GridGeometry& g = field.geometry;
+    Raster result = Raster::filled(grid, Raster::nodata);
+    result.crs_wkt = field.crs_wkt, result.source = field.source;
+    for (Index j = 0; j < g.ny; ++j) {
+        const NodesInPixel rows(g.y(j), g.cell, grid.y0, grid.cell);
+        for (Index i = 0; i < g.nx; ++i) {
+            const double own = field.at(i, j);
+            if (std::isnan(own)) continue;
+            const NodesInPixel row(g.x(i), g.cell, grid.x0, grid.cell);
+            const std::vector<double> depths =
+                own > 0.0 ? parts_of(field, i, j, row.places, rows.places) : std::vector<double>();
+            const auto wide = static_cast<Index>(row.places.size()), high = static_cast<Index>(rows.places.size());
+            for (Index b = 0; b < high; ++b)
+                for (Index a = 0; a < wide; ++a) {
+                    const Index x = row.first + a, y = rows.first + b;
+                    if (x < 0 || y < 0 || x >= grid.nx || y >= grid.ny) continue;
+                    result.at(x, y) = depths.empty() ? 0.0 : depths[static_cast<std::size_t>(b * wide + a)];
+                }
+        }
+    }
     return result;
 }
 

@@ -7,10 +7,11 @@
 #include <map>
 
 #include "base/error.h"
-#include "particles/bed_points.h"
 #include "scene/barriers_of_case.h"
 #include "scene/joined_barriers.h"
 #include "scene/scene_parts.h"
+#include "terrain/outline_nodes.h"
+#include "terrain/part_of.h"
 
 namespace frana {
 namespace {
@@ -99,13 +100,28 @@ private:
     std::array<double, 4> terrain_extent() const {
         return (scene_.wider ? scene_.wider->grid : scene_.bed.geometry).pixel_extent();
     }
+    /// Of the nodes that a polygon stands on [m]; infinity where it has no ground.
+    double lowest_ground(const Polygon& polygon) const {
+        const GridGeometry& g = scene_.bed.geometry;
+        double lowest = INFINITY;
+        if (polygon.rings.empty()) return lowest;
+        const NodeBox near = common(widened(cells_of(polygon.rings.front(), g), 1), NodeBox::all(g));
+        if (near.nx < 1 || near.ny < 1) return lowest;
+        Polygons alone;
+        alone.parts = {polygon};
+        const std::vector<char> stands = nodes_of_outline(alone, near.of(g));
+        for (Index j = 0; j < near.ny; ++j)
+            for (Index i = 0; i < near.nx; ++i)
+                if (stands[static_cast<std::size_t>(j * near.nx + i)])
+                    lowest = std::fmin(lowest, scene_.bed.at(near.i0 + i, near.j0 + j));
+        return lowest;
+    }
+
     /// A top that no ground of its outline is below. Erodible ground may free it later.
     void remark_buried(const Barrier& barrier) {
         if (!barrier.top || scene_.erodible || barrier.outline.parts.empty()) return;
         double lowest = INFINITY;
-        for (const Polygon& polygon : barrier.outline.parts)
-            for (const auto& ring : polygon.rings)
-                for (const Vec2& p : ring) lowest = std::fmin(lowest, bed_elevation(scene_.bed, p.x(), p.y()));
+        for (const Polygon& polygon : barrier.outline.parts) lowest = std::min(lowest, lowest_ground(polygon));
         if (!(*barrier.top <= lowest) || std::isinf(lowest)) return;
         scene_.log.push_back(
             fmt::format("{}: found {:.6g} m; expected more than the ground's {:.6g} m: nothing meets it",

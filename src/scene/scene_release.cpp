@@ -190,12 +190,58 @@ private:
             release.depth_field = raster(case_.path(key("depth")));
             remark_on_gaps(*release.depth_field, claimed(release, release.depth_field->geometry), place("depth"), log_);
             *release.depth_field = finer_field(*release.depth_field, bed_.geometry.cell);
+        } else if (auto below = depth_below_surface(release)) {
+            release.depth_field = finer_field(*below, bed_.geometry.cell);
         } else if (given("surface") || normal) {
             release.depth_field = depth_on(bed_.geometry, given("outline"), claimed(release, bed_.geometry));
         } else {
             release.depth = depth_number("depth");
         }
         if (normal) make_vertical(*release.depth_field, claimed(release, release.depth_field->geometry));
+    }
+
+    /// The depth below a surface that has the pixels of the elevation model, in those, where they are larger than the
+    /// cells. Both interpolated by themselves would differ by more than their pixels do, beside each step of the surface.
+    /// Nothing otherwise, or where material is claimed over nodata.
+    std::optional<Raster> depth_below_surface(const Release& release) const {
+        if (!given("surface") || !is_file("surface")) return {};
+        const std::vector<std::string> before = log_;
+        const std::optional<Raster> depth = surface_minus_model(release);
+        if (!depth)
+            log_ = before;
+        else
+            remark_on_gaps(*depth, claimed(release, depth->geometry), place("surface"), log_);
+        return depth;
+    }
+
+    std::optional<Raster> surface_minus_model(const Release& release) const {
+        constexpr double kRoundOff = 1e-9;
+        const std::filesystem::path file = case_.path(key("surface")), dem = case_.path("terrain.dem");
+        const GridGeometry& g = bed_.geometry;
+        const Vec2 middle(0.5 * (g.x0 + g.x_max()), 0.5 * (g.y0 + g.y_max()));
+        std::vector<std::string> unused;
+        const auto part = [&](const std::filesystem::path& path, const std::array<double, 4>& extent) {
+            return reader_.read_raster(path, extent, bed_.crs_wkt, unused);
+        };
+        try {
+            const Raster pixel = part(dem, {middle.x(), middle.y(), middle.x() + g.cell, middle.y() + g.cell});
+            if (!(pixel.geometry.cell > (1.0 + kRoundOff) * g.cell)) return {};
+            reader_.require_metres(file);
+            Raster depth = raster(file);
+            const double within = kRoundOff * depth.geometry.cell;
+            const auto [x0, y0, x1, y1] = depth.geometry.pixel_extent();
+            const Raster model = part(dem, {x0 + within, y0 + within, x1 - within, y1 - within});
+            if (!(depth.geometry == model.geometry)) return {};
+            const NodeMarks wanted = claimed(release, depth.geometry);
+            for (std::size_t k = 0; k < depth.values.size(); ++k) {
+                const bool known = std::isfinite(model.values[k]) || std::isnan(depth.values[k]);
+                if (!known && release.outline && wanted[k]) return {};
+                depth.values[k] = known ? depth.values[k] - model.values[k] : Raster::nodata;
+            }
+            return depth;
+        } catch (const UserError&) {
+            return {};  // the other way says what is wrong
+        }
     }
 
     /// Depth, or surface minus bed, at the pixels of `grid`. Over nodata of the bed the depth is unknown when

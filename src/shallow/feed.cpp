@@ -203,6 +203,18 @@ Feed::Outlook Feed::outlook(double end) const {
     return all;
 }
 
+std::vector<std::vector<Feed::Entry>> Feed::entries(double end) const {
+    std::vector<std::vector<Entry>> all;
+    for (const Source& source : sources_) {
+        double volume = 0.0;
+        for (const InflowRow& row : source.rows)
+            if (row.complete <= end) volume += row.volume;
+        std::vector<Entry>& entries = all.emplace_back();
+        for (const Station& station : source.stations) entries.push_back({station.at, station.share * volume});
+    }
+    return all;
+}
+
 Vec2 Feed::middle() const {
     Vec2 sum(0, 0);
     for (const Station& station : sources_.front().stations) sum += station.share * station.at;

@@ -62,6 +62,13 @@ public:
         std::vector<Vec2> from;                      ///< places where they come in, on the map
     };
     Outlook outlook(double end) const;
+    /// A place where it comes in, on the map.
+    struct Entry {
+        Vec2 at;
+        double volume;  ///< [m3]
+    };
+    /// What each inflow brings before a time.
+    std::vector<std::vector<Entry>> entries(double end) const;
     /// The middle of the first line, on the map.
     Vec2 middle() const;
 

@@ -361,6 +361,8 @@ std::string barriers(const RunRecord& r) {
         text += fmt::format(
             "\nThe first blow of a contact is as hard as the artificial sound is fast ({:.4g} N in the worst step of "
             "all). Means over less than {:.3g} s, twenty times what sound takes through the flow, may hold some of it. "
+            "Points press on a barrier from a cell of the stage away. What they did before first contact is dated to "
+            "it. "
             "Over it: what stood over the barrier at any time.\n",
             hardest, blur);
     else if (blur <= 0.0)
