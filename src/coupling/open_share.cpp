@@ -9,7 +9,7 @@
 
 #include "coupling/barriers.h"
 #include "coupling/solid_scene.h"
-#include "particles/bed_points.h"
+#include "terrain/bed_points.h"
 #include "terrain/part_of.h"
 
 namespace frana {

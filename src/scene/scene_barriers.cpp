@@ -7,10 +7,10 @@
 #include <map>
 
 #include "base/error.h"
-#include "particles/bed_points.h"
 #include "scene/barriers_of_case.h"
 #include "scene/joined_barriers.h"
 #include "scene/scene_parts.h"
+#include "terrain/bed_points.h"
 
 namespace frana {
 namespace {
