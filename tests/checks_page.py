@@ -40,8 +40,8 @@ def renewed(page, table):
         name = of.split()[0].strip("`")
         if name not in errors or errors[name] == "-":
             raise SystemExit(f"{problem} has no error of {name} in tests/verification.txt")
-        return f"| {what}`{problem}` | {of} | {cells} | {figures(errors[name])} | {order if name == 'depth' else ''} |" \
-            .replace("|  |", "| |")
+        order = f" {order}" if name == "depth" else ""
+        return f"| {what}`{problem}` | {of} | {cells} | {figures(errors[name])} |{order} |"
     page = re.sub(r"^\| (.*)`(\w+)` \| (`?\w+`?(?: \[m/s\])?) \| \d+ \| [\d.e-]+ \|.*\|$", row, page, flags=re.M)
     missed = len(re.findall(r"^missed", table, re.M))
     return re.sub(r"Goals that are missed: \d+\.", f"Goals that are missed: {missed}.", page)

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Runs the commands of all READMEs: readme_commands.py FRANA SOURCE BUILD FOLDER.
 
-Those are the lines of ```sh blocks, and those after `$ ` in other blocks. Those of frana run as they stand, in a
-scratch folder that sees the project's cases and is the home folder; commands without --out get one. What costs too much,
-or needs what not every machine has, is in readme_commands.toml: with the test of ctest that runs it, or what is run instead
-and why. A command that is neither run nor listed fails, as does one that is listed and stands on no page. Of `frana ...` in
-running text the command, its options and the names of its problems are looked up.
+They are the lines of ```sh blocks, and those after `$ ` in other blocks. Those of frana run as they stand, in a scratch
+folder that sees the project's cases and is the home folder; commands without --out get one. What costs too much, or needs
+what not every machine has, is in readme_commands.toml, with the test that runs it, or with what is run instead and why. A
+command that is neither run nor listed fails, as does one that is listed and stands on no page. Of `frana ...` in running
+text the command, its options and the names of its problems are looked up.
 """
 import json
 import os
@@ -16,14 +16,14 @@ import sys
 import time
 import tomllib
 
-PAGES_APART = ("build",)
+PAGES_APART = "build"
 HERE = os.path.dirname(os.path.abspath(__file__))
 LISTED = os.path.join(HERE, "readme_commands.toml")
 
 
 def pages(source):
     for folder, folders, files in os.walk(source):
-        folders[:] = sorted(f for f in folders if not f.startswith(".") and not f.startswith(PAGES_APART) and f != "out")
+        folders[:] = sorted(f for f in folders if not f.startswith((".", PAGES_APART)) and f != "out")
         for name in sorted(files):
             if name.endswith(".md"):
                 with open(os.path.join(folder, name), encoding="utf-8") as text:
@@ -60,7 +60,8 @@ def as_it_stands(command, number):
 
 def known_tests(build):
     """What each test of this build runs, by name; nothing of those that a build with more switched on has."""
-    listed = subprocess.run(["ctest", "--test-dir", build, "--show-only=json-v1"], stdout=subprocess.PIPE, check=True).stdout
+    asked = ["ctest", "--test-dir", build, "--show-only=json-v1"]
+    listed = subprocess.run(asked, stdout=subprocess.PIPE, check=True).stdout
     with open(os.path.join(HERE, "CMakeLists.txt"), encoding="utf-8") as text:
         tests = {name: "" for name in re.findall(r"add_test\(NAME (\w+)", text.read())}
     for test in json.loads(listed)["tests"]:
@@ -77,7 +78,8 @@ def wrong_in_list(listed, on_pages, tests):
         if one.get("test", "core") not in tests:
             yield f"no such test, {one['test']}: {one['is']}"
         elif one["is"].startswith("frana run ") and "test" in one:  # of a case, in full and with nothing set
-            if one["is"].split()[2] not in tests[one["test"]] or "--set" in one["is"] or "-DSET= " not in tests[one["test"]]:
+            runs = tests[one["test"]]
+            if one["is"].split()[2] not in runs or "--set" in one["is"] or "-DSET= " not in runs:
                 yield f"the test {one['test']} does not run it: {one['is']}"
         if set(one) - {"is", "run", "test", "why"}:
             yield f"has unknown entries: {one['is']}"

@@ -34,8 +34,8 @@ inline Index pixel_of(const GridGeometry& g, double x, double y) {
     return static_cast<Index>(j) * g.nx + static_cast<Index>(i);
 }
 
-/// The four nodes around a place, and where between them it lies. Beyond the outer nodes it is as on them. Of a grid of one
-/// row or column those beyond it have no weight.
+/// The four nodes around a place, and where between them it lies. Beyond the outer nodes it is as on them. Of a grid of
+/// one row or column those beyond it have no weight.
 struct NodeSquare {
     Index i = 0, j = 0;       ///< south-west node
     double s = 0.0, t = 0.0;  ///< way from it to the east and to the north [cells], 0 to 1
