@@ -39,8 +39,10 @@ namespace {
 /// Calls body(node, weight) for the four nodes around a map point.
 template <class Body>
 void for_each_around(const GridGeometry& g, double x, double y, Body&& body) {
-    const NodeSquare around(g, x, y);
-    for (Index k = 0; k < 4; ++k) body(around.node(k).j * g.nx + around.node(k).i, around.weight(k));
+    const NodeSquare at(g, x, y);
+    const Index first = at.j * g.nx + at.i;
+    for (Index b = 0; b < 2; ++b)
+        for (Index a = 0; a < 2; ++a) body(first + b * g.nx + a, (a ? at.s : 1.0 - at.s) * (b ? at.t : 1.0 - at.t));
 }
 
 }  // namespace
