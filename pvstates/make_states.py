@@ -162,6 +162,7 @@ def main():
     parser.add_argument("states", nargs="*", help="the states to make; default: all that the run has")
     parser.add_argument("--out", default=os.path.dirname(os.path.abspath(__file__)))
     given = parser.parse_args()
+    os.makedirs(given.out, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         # A stand-in for the run with a look of its own; everything else is linked.
         for entry in os.listdir(given.run_dir):

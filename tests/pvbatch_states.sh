@@ -46,6 +46,22 @@ cat "$work/states.out"
 grep -m 5 "ERR|" "$work/states.log" && status=1
 [ $status -eq 0 ] || { echo "wrong (status $status), see $work"; tail -20 "$work/states.log"; exit 1; }
 
+# The templates are made as pvstates/README.md says.
+while read -r folder states; do
+    # shellcheck disable=SC2086  # none or one
+    run_pvbatch "$source/pvstates/make_states.py" "$work/$folder" $states --out "$work/made" </dev/null >"$work/made.log" 2>&1 ||
+        { echo "no template from $folder:"; tail -20 "$work/made.log"; exit 1; }
+done <<END
+run
+impact impact
+structure structure
+phases phases
+ensemble probability
+END
+for state in "$source"/pvstates/*.pvsm; do
+    [ -s "$work/made/${state##*/}" ] || { echo "make_states.py did not make ${state##*/}"; exit 1; }
+done
+
 # A state that the run has no files for: one sentence, exit code 2.
 rm "$again/survey_areas.vtp"
 "$frana" states "$again" >/dev/null || exit 1

@@ -1,98 +1,125 @@
 #!/usr/bin/env python3
-"""Runs the frana commands that stand in the ```sh blocks of all READMEs: readme_commands.py FRANA SOURCE FOLDER.
+"""Runs the commands of all READMEs: readme_commands.py FRANA SOURCE BUILD FOLDER.
 
-Each is run as it stands, in a scratch folder that sees the project's cases, with three exceptions, so that it takes seconds:
-runs stop early (--until; the cases are run in full by tests of their own), `converge` has a short time.end, `ensemble` and
-`calibrate` a few samples, and commands that take minutes by their nature are shortened as SHORTENED says. `case.toml` is a copy
-of the volcano's. Commands without --out get one. A command whose options or keys do not exist any more fails.
+They are the lines of ```sh blocks, and those after `$ ` in other blocks. Those of frana run as they stand, in a scratch
+folder that sees the project's cases and is the home folder; commands without --out get one. What costs too much, or needs
+what not every machine has, is in readme_commands.toml, with the test that runs it, or with what is run instead and why. A
+command that is neither run nor listed fails, as does one that is listed and stands on no page. Of `frana ...` in running
+text the command, its options and the names of its problems are looked up.
 """
+import json
 import os
 import re
 import shutil
 import subprocess
 import sys
+import time
+import tomllib
 
-# Commands of minutes: what is run in their place. The options are the same, the amount of work is not.
-SHORTENED = {
-    "frana verify --json verify.json": "frana verify --json verify.json lake_z1 --cells 10",
-    "frana verify --study": None,  # a minute, and it has no shorter form: ctest "verification" runs the problems
-    "frana verify --figure work_precision.png": None,  # as --study
-    "frana verify stoker similarity --cells 80,160": "frana verify stoker similarity --cells 40",
-    "frana verify conversion --cells 250,500,1000,1500,2000": "frana verify conversion --cells 50,100",
-    "frana bench": "frana bench --quick --particles 2000",
-    "frana bench --threads 1,2,4,8,16": "frana bench --quick --particles 2000 --threads 1,2",
-    "frana bench --quick --particles 100000": "frana bench --quick --particles 2000",
-    "frana bench --json bench.json": "frana bench --quick --particles 2000 --json bench.json",
-    "frana stress --seconds 600 --seed 7": "frana stress --seconds 600 --seed 7 --scenes 3",
-    "frana stress --model structured,staged": "frana stress --model structured,staged --scenes 2",
-    # A folder that only a failed scene leaves: any case does.
-    "frana stress --case out/stress/stress-staged-7-42/case.toml --steps 30": "frana stress --case cases/wall/case.toml --steps 3",
-    "frana stress --cfl-map --figure cfl.png": None,  # half an hour
-}
-# Needs pvbatch: run by the test pvbatch_states.
-ELSEWHERE = ("xvfb-run", "pvbatch")
-PAGES_APART = ("build",)
+PAGES_APART = "build"
+HERE = os.path.dirname(os.path.abspath(__file__))
+LISTED = os.path.join(HERE, "readme_commands.toml")
 
 
 def pages(source):
     for folder, folders, files in os.walk(source):
-        folders[:] = sorted(f for f in folders if not f.startswith(".") and not f.startswith(PAGES_APART) and f != "out")
+        folders[:] = sorted(f for f in folders if not f.startswith((".", PAGES_APART)) and f != "out")
         for name in sorted(files):
             if name.endswith(".md"):
-                yield os.path.join(folder, name)
+                with open(os.path.join(folder, name), encoding="utf-8") as text:
+                    yield os.path.relpath(os.path.join(folder, name), source), text.read()
 
 
-def commands(page):
-    with open(page, encoding="utf-8") as text:
-        blocks = re.findall(r"^```sh\n(.*?)^```", text.read(), re.M | re.S)
-    for block in blocks:
+def commands(text):
+    for kind, block in re.findall(r"^```(\w*)\n(.*?)^```", text, re.M | re.S):
         for line in block.replace("\\\n", " ").splitlines():
-            line = re.sub(r"\s+#.*", "", line).strip()
+            if kind != "sh":
+                if not line.startswith("$ "):
+                    continue
+                line = line[2:]
+            line = re.sub(r"(^|\s+)#.*", "", line).strip()
             loop = re.fullmatch(r"for (\w+) in ([^;]+); do (.*); done", line)
-            parts = [loop.group(3).replace("$" + loop.group(1), loop.group(2).split()[0])] if loop else line.split(" && ")
+            parts = [loop.group(3).replace("$" + loop.group(1), of) for of in loop.group(2).split()] if loop \
+                else line.split(" && ")
             for part in parts:
-                part = part.replace("build/bin/frana", "frana").strip()
-                if part.startswith("frana ") and not any(word in part for word in ELSEWHERE):
-                    yield part
+                if part.strip():
+                    yield part.replace("build/bin/frana", "frana").strip()
 
 
-def quick(command, number):
-    if command in SHORTENED:
-        return SHORTENED[command]
+def as_it_stands(command, number):
+    """With a folder of its own where it says none, and without what it would ask or print."""
     words = command.split()
-    if words[1] in ("run", "converge"):
-        if "--out" not in words:
+    if words[:1] == ["frana"] and words[1] in ("run", "converge", "ensemble", "calibrate"):
+        if "--out" not in words and "--join" not in words:
             command += f" --out out/readme_{number}"
-        command += " --quiet --overwrite"
-    if words[1] == "run":
-        # A frame at the start and one at the end, so that what follows on the page finds times to look at; no pictures,
-        # which take seconds and which `frana figures` draws.
-        command += f" --until {0.3 if 'conversion' in command else 0.01}"
-        if "output.formats" not in command:
-            command += """ --set 'output.formats=["vtk","geotiff"]'"""
-    if words[1] == "figures":  # of a run that stopped early
-        command = re.sub(r"--time \S+", "--time 0", command)
-    if words[1] == "ensemble":
-        command = command.replace("cases/ensemble/", "few/").replace("--again 317", "--again 3") + " --quiet"
-        if not re.search("--(join|again|check)", command):
-            command += " --resume"  # the same ensemble stands on two pages
-    if words[1] == "calibrate":
-        command = command.replace("cases/calibrate/", "few/") + " --quiet"
-        if "--resume" not in words:
+        command += " --quiet"
+        if words[1] != "ensemble" and "--resume" not in words:
             command += " --overwrite"
-    if words[1] == "converge":
-        command += " --set time.end=0.5 --set output.formats=[]"
     return command
 
 
-def main():
-    frana, source, folder = sys.argv[1:4]
+def known_tests(build):
+    """What each test of this build runs, by name; nothing of those that a build with more switched on has."""
+    asked = ["ctest", "--test-dir", build, "--show-only=json-v1"]
+    listed = subprocess.run(asked, stdout=subprocess.PIPE, check=True).stdout
+    with open(os.path.join(HERE, "CMakeLists.txt"), encoding="utf-8") as text:
+        tests = {name: "" for name in re.findall(r"add_test\(NAME (\w+)", text.read())}
+    for test in json.loads(listed)["tests"]:
+        tests[test["name"]] = " ".join(test.get("command", ""))
+    return tests
+
+
+def wrong_in_list(listed, on_pages, tests):
+    for one in listed:
+        if one["is"] not in on_pages:
+            yield f"stands on no page: {one['is']}"
+        if ("test" in one) == ("why" in one):
+            yield f"needs either a test that runs it or a reason: {one['is']}"
+        if one.get("test", "core") not in tests:
+            yield f"no such test, {one['test']}: {one['is']}"
+        elif one["is"].startswith("frana run ") and "test" in one:  # of a case, in full and with nothing set
+            runs = tests[one["test"]]
+            if one["is"].split()[2] not in runs or "--set" in one["is"] or "-DSET= " not in runs:
+                yield f"the test {one['test']} does not run it: {one['is']}"
+        if set(one) - {"is", "run", "test", "why"}:
+            yield f"has unknown entries: {one['is']}"
+
+
+def said(line, folder, environment):
+    return subprocess.run(line, shell=True, cwd=folder, env=environment, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True)
+
+
+def wrong_in_text(frana, all_pages, folder, environment):
+    """Commands, options and problems that running text names and that do not exist."""
+    helps = {}
+    problems = set(re.findall(r"[\w]+", said(f"{frana} verify --list", folder, environment).stdout))
+    for page, text in all_pages:
+        for inline in re.findall(r"`frana ([a-z][^`]*)`", re.sub(r"^```.*?^```", "", text, flags=re.M | re.S)):
+            words = inline.split()
+            if words[0] not in helps:
+                asked = said(f"{frana} {words[0]} --help", folder, environment)
+                helps[words[0]] = asked.stdout if asked.returncode == 0 else None
+            if helps[words[0]] is None:
+                yield f"{page}: no such command: frana {inline}"
+                continue
+            for option in re.findall(r"--[a-z][a-z-]*", inline):
+                if not re.search(re.escape(option) + r"(?![a-z-])", helps[words[0]]):
+                    yield f"{page}: no such option, {option}: frana {inline}"
+            for name in words[1:] if words[0] == "verify" else []:
+                if name.startswith("--"):
+                    break
+                if re.fullmatch(r"[a-z]\w*", name) and name not in problems:
+                    yield f"{page}: no such problem, {name}: frana {inline}"
+
+
+def make_folder(source, build, folder):
     shutil.rmtree(folder, ignore_errors=True)
-    os.makedirs(folder)
-    os.symlink(os.path.join(source, "cases"), os.path.join(folder, "cases"))
-    for name in ("case.toml", "dem.asc", "release.geojson"):
-        shutil.copy(os.path.join(source, "cases", "maungawhau", name), folder)
     os.makedirs(os.path.join(folder, "few"))
+    os.symlink(os.path.join(source, "cases"), os.path.join(folder, "cases"))
+    os.symlink(build, os.path.join(folder, "build"))
+    for name in ("case.toml", "dem.asc", "release.geojson"):  # "case.toml" of a page is the volcano's
+        shutil.copy(os.path.join(source, "cases", "maungawhau", name), folder)
     with open(os.path.join(source, "cases", "ensemble", "ensemble.toml"), encoding="utf-8") as whole:
         few = re.sub(r"samples = \d+", "samples = 4", whole.read()).replace('"case.toml"', '"../cases/ensemble/case.toml"')
     with open(os.path.join(folder, "few", "ensemble.toml"), "w", encoding="utf-8") as file:
@@ -102,23 +129,46 @@ def main():
         few = re.sub(r'case = "', 'case = "../cases/calibrate/', few)
     with open(os.path.join(folder, "few", "calibrate.toml"), "w", encoding="utf-8") as file:
         file.write(few)
-    environment = dict(os.environ, OMP_NUM_THREADS="1")
-    tried, failed, done = 0, 0, set()
-    for page in pages(source):
-        for command in commands(page):
-            line = quick(command, tried)
-            if line is None or (line in SHORTENED.values() and line in done):  # two may be shortened to one
-                continue
-            tried += 1
-            done.add(line)
-            ran = subprocess.run(line.replace("frana", frana, 1), shell=True, cwd=folder, env=environment,
-                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-            if ran.returncode != 0:
-                failed += 1
-                print(f"{os.path.relpath(page, source)}: {command}\n  ran as: {line}\n  exit {ran.returncode}: "
-                      f"{ran.stdout.strip()[-600:]}")
-    print(f"{tried} commands of the READMEs run, {failed} failed")
-    return 1 if failed or tried < 30 else 0
+
+
+def main():
+    frana, source, build, folder = (os.path.abspath(path) for path in sys.argv[1:5])
+    make_folder(source, build, folder)
+    environment = dict(os.environ, OMP_NUM_THREADS="1", HOME=folder,
+                       PATH=os.path.dirname(frana) + os.pathsep + os.environ["PATH"])
+    with open(LISTED, "rb") as file:
+        listed = tomllib.load(file)["command"]
+    instead = {one["is"]: one for one in listed}
+    all_pages = list(pages(source))
+    on_pages = [(page, command) for page, text in all_pages for command in commands(text)]
+    wrong = list(wrong_in_list(listed, {command for _, command in on_pages}, known_tests(build)))
+    wrong += wrong_in_text(frana, all_pages, folder, environment)
+    counts, done = {"as they stand": 0, "in a shorter form": 0, "by tests of their own": 0, "not": 0}, set()
+    for page, command in on_pages:
+        one = instead.get(command)
+        if command in done:
+            continue
+        done.add(command)
+        counts["as they stand" if one is None else "by tests of their own" if "test" in one
+               else "in a shorter form" if "run" in one else "not"] += 1
+        if one is not None and "run" not in one:
+            continue
+        line = as_it_stands(one["run"] if one else command, len(done))
+        if line in done:  # two may be shortened to one
+            continue
+        done.add(line)
+        if one is None and line.split()[0] not in ("frana", "mkdir", "ln"):
+            wrong.append(f"{page}: is neither of frana nor in readme_commands.toml: {command}")
+            continue
+        started = time.monotonic()
+        ran = said(line, folder, environment)
+        print(f"{time.monotonic() - started:6.1f} s  {line}", flush=True)
+        if ran.returncode != 0:
+            wrong.append(f"{page}: {command}\n  ran as: {line}\n  exit {ran.returncode}: {ran.stdout.strip()[-600:]}")
+    print("commands of the READMEs run " + ", ".join(f"{what}: {count}" for what, count in counts.items()))
+    for one in wrong:
+        print("wrong: " + one)
+    return 1 if wrong or counts["as they stand"] < 25 else 0
 
 
 if __name__ == "__main__":

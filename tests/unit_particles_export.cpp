@@ -3,9 +3,9 @@
 #include "base/error.h"
 #include "catch.h"
 #include "fresh_folder.h"
-#include "particles/bed_points.h"
 #include "particles/export.h"
 #include "release_maker.h"
+#include "terrain/bed_points.h"
 
 using namespace frana;
 using namespace release_maker;

@@ -111,5 +111,14 @@ instead(SAY "Mpm3d, or a name with 3d" CODE TEXTS "SolidFlow" "[a-z]?Space[A-Z]"
 instead(SAY "Array" CODE TEXTS "(^|[^a-zA-Z_])(Column|ColumnOf)($|[^a-zA-Z_])"
         ROOMS src/base/ src/mpm/ src/shallow/ src/solid3d/ src/structured/)
 instead(SAY "constants::kPi" CODE TEXTS "M_PI")
+# What a figure comes from has to be there for a reader: sources of expected figures and of gates, and the pages.
+file(GLOB_RECURSE told ${ROOT}/cases/*.csv ${ROOT}/cases/*.md ${ROOT}/src/*.md ${ROOT}/src/*.cpp ${ROOT}/src/*.h)
+list(FILTER told EXCLUDE REGEX "/data/")
+foreach(file ${told})
+  file(STRINGS ${file} found REGEX "[Pp]rototype")
+  if(found)
+    message(SEND_ERROR "${file}: found 'prototype'; say what a reader can run or look up")
+  endif()
+endforeach()
 list(LENGTH sources count)
 message(STATUS "${lists} lists of words hold in ${count} files")

@@ -16,30 +16,11 @@
 #include "base/error.h"
 #include "compare/outline.h"
 #include "compare/overlap.h"
+#include "terrain/bed_points.h"
 #include "vtk_io/writers_xml.h"
 
 namespace frana {
 namespace {
-
-/// Bed at any map point, bilinear between those of the four nodes around it that have terrain. Outside the nodes as at
-/// the edge. NaN when none of the four has terrain.
-double draped(const Raster& bed, const Vec2& point) {
-    const GridGeometry& g = bed.geometry;
-    const double u = std::clamp((point.x() - g.x0) / g.cell, 0.0, static_cast<double>(g.nx - 1));
-    const double v = std::clamp((point.y() - g.y0) / g.cell, 0.0, static_cast<double>(g.ny - 1));
-    const Index i = std::min(static_cast<Index>(u), std::max<Index>(g.nx - 2, 0));
-    const Index j = std::min(static_cast<Index>(v), std::max<Index>(g.ny - 2, 0));
-    double sum = 0.0, weights = 0.0;
-    for (Index b = j; b < std::min(j + 2, g.ny); ++b)
-        for (Index a = i; a < std::min(i + 2, g.nx); ++a) {
-            const double weight =
-                (1.0 - std::abs(u - static_cast<double>(a))) * (1.0 - std::abs(v - static_cast<double>(b)));
-            if (!std::isfinite(bed.at(a, b)) || !(weight > 0.0)) continue;
-            sum += weight * bed.at(a, b);
-            weights += weight;
-        }
-    return weights > 0.0 ? sum / weights : Raster::nodata;
-}
 
 bool on_terrain(const GridGeometry& g, const Vec2& point) {
     const auto [xmin, ymin, xmax, ymax] = g.pixel_extent();
@@ -71,7 +52,7 @@ struct AreaMesh {
         const Vec2 to[4] = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
         for (int c = 0; c < 4; ++c) {
             const Vec2 corner = Vec2(g.x(i), g.y(j)) + to[c];
-            corners[c] = points->InsertNextPoint(corner.x(), corner.y(), draped(bed, corner));
+            corners[c] = points->InsertNextPoint(corner.x(), corner.y(), bed_below(bed, corner.x(), corner.y()));
         }
         quads->InsertNextCell(4, corners);
         agreement->InsertNextValue(what);
@@ -124,7 +105,8 @@ struct LineMesh {
             const bool last = k + 1 == ring.size();
             for (Index part = 0; part < parts + (last ? 1 : 0); ++part) {
                 const Vec2 point = a + static_cast<double>(part) / static_cast<double>(parts) * way;
-                const double z = on_terrain(bed.geometry, point) ? draped(bed, point) : Raster::nodata;
+                const double z =
+                    on_terrain(bed.geometry, point) ? bed_below(bed, point.x(), point.y()) : Raster::nodata;
                 if (std::isfinite(z))
                     line.push_back(points->InsertNextPoint(point.x(), point.y(), z));
                 else

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "compare/runout.h"
+#include "terrain/places.h"
 
 namespace frana {
 namespace {
@@ -12,12 +13,9 @@ namespace {
 /// Between nodes; nothing without terrain.
 std::optional<double> height_at(const Raster& bed, const Vec2& p) {
     const GridGeometry& g = bed.geometry;
-    const double x = (p.x() - g.x0) / g.cell, y = (p.y() - g.y0) / g.cell;
-    const auto i = static_cast<Index>(std::floor(x)), j = static_cast<Index>(std::floor(y));
-    if (i < 0 || j < 0 || i + 1 >= g.nx || j + 1 >= g.ny) return std::nullopt;
-    const double u = x - static_cast<double>(i), v = y - static_cast<double>(j);
-    const double z = (1 - v) * ((1 - u) * bed.at(i, j) + u * bed.at(i + 1, j)) +
-                     v * ((1 - u) * bed.at(i, j + 1) + u * bed.at(i + 1, j + 1));
+    const NodeSquare around(g, p);
+    if (!between_nodes(g, p) || !(around.s < 1.0 && around.t < 1.0)) return std::nullopt;
+    const double z = around.value(bed);
     return std::isnan(z) ? std::nullopt : std::optional<double>(z);
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "compare/nearest.h"
+#include "terrain/places.h"
 
 namespace frana {
 namespace {
@@ -113,11 +114,11 @@ Polyline smoothed(const Polyline& line, Index reach) {
 
 Polyline steepest_path(const Raster& bed, const Vec2& start) {
     const GridGeometry& g = bed.geometry;
-    const auto i = static_cast<Index>(std::lround((start.x() - g.x0) / g.cell));
-    const auto j = static_cast<Index>(std::lround((start.y() - g.y0) / g.cell));
-    if (i < 0 || j < 0 || i >= g.nx || j >= g.ny || std::isnan(bed.at(i, j))) return {};
+    const NodeAt first = nearest_node(g, start);
+    if (!has_node(g, first) || std::isnan(bed.at(first.i, first.j))) return {};
     Polyline line;
-    for (const Index node : Drainage(bed).from(j * g.nx + i)) line.emplace_back(g.x(node % g.nx), g.y(node / g.nx));
+    for (const Index node : Drainage(bed).from(first.j * g.nx + first.i))
+        line.emplace_back(g.x(node % g.nx), g.y(node / g.nx));
     constexpr Index reach = 5;  // takes out the eight directions of the grid, leaves the bends of a valley
     return smoothed(line, reach);
 }

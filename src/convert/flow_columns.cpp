@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "particles/bed_points.h"
+#include "terrain/bed_points.h"
 
 namespace frana {
 namespace {

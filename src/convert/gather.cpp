@@ -5,7 +5,8 @@
 #include <map>
 
 #include "base/compensated_sum.h"
-#include "particles/bed_points.h"
+#include "terrain/bed_points.h"
+#include "terrain/places.h"
 
 namespace frana {
 namespace {
@@ -18,11 +19,8 @@ struct Bin {
 
 /// Pixel that a place belongs to; -1 beyond them or over unknown bed.
 Index pixel_at(const Raster& bed, double x, double y) {
-    const GridGeometry& g = bed.geometry;
-    const double i = std::floor((x - g.x0) / g.cell + 0.5), j = std::floor((y - g.y0) / g.cell + 0.5);
-    if (!(i >= 0.0 && j >= 0.0 && i < static_cast<double>(g.nx) && j < static_cast<double>(g.ny))) return -1;
-    const Index pixel = static_cast<Index>(j) * g.nx + static_cast<Index>(i);
-    return std::isnan(bed.values[static_cast<std::size_t>(pixel)]) ? -1 : pixel;
+    const Index pixel = pixel_of(bed.geometry, x, y);
+    return pixel < 0 || std::isnan(bed.values[static_cast<std::size_t>(pixel)]) ? -1 : pixel;
 }
 
 /// Places are summed relative to the pixel's middle, or large map coordinates would cost digits.

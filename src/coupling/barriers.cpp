@@ -12,11 +12,12 @@
 
 #include "base/error.h"
 #include "coupling/solid_scene.h"
-#include "particles/bed_points.h"
 #include "shallow/feed.h"
 #include "solid3d/face_ledger.h"
+#include "terrain/bed_points.h"
 #include "terrain/outline_nodes.h"
 #include "terrain/part_of.h"
+#include "terrain/places.h"
 
 namespace frana {
 namespace {
@@ -235,15 +236,14 @@ double firm_up(Raster& depth, const Raster& bed, const BarrierNode& node) {
 
 /// Of releases that stand in the bed, a barrier holds what is below its top.
 void hold_up(std::vector<LateRelease>& late, const Raster& bed, const std::vector<BarrierNode>& nodes) {
-    const GridGeometry& g = bed.geometry;
     for (LateRelease& release : late) {
         if (release.scar.empty()) continue;
         std::map<std::pair<Index, Index>, double> above;  // [m]
         for (const BarrierNode& node : nodes)
             above[{node.i, node.j}] = std::max(0.0, bed.at(node.i, node.j) - node.top);
         for (ScarNode& node : release.scar) {
-            const Index i = std::lround((node.at.x() - g.x0) / g.cell), j = std::lround((node.at.y() - g.y0) / g.cell);
-            const auto left = above.find({i, j});
+            const NodeAt nearest = nearest_node(bed.geometry, node.at);
+            const auto left = above.find({nearest.i, nearest.j});
             if (left == above.end()) continue;
             node.depth = std::min(node.depth, left->second);
             left->second -= node.depth;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "terrain/places.h"
+
 namespace frana {
 
 FlowMap::FlowMap(const Scene& scene)
@@ -34,31 +36,21 @@ double FlowMap::pressure(Index k) const {
 
 namespace {
 
-/// Four nodes around a map point, with their weights.
-struct Around {
-    Index first, row;
-    double fu, fv;
-
-    Around(const GridGeometry& g, double x, double y) : row(g.nx) {
-        const double u = std::clamp((x - g.x0) / g.cell, 0.0, static_cast<double>(g.nx - 1));
-        const double v = std::clamp((y - g.y0) / g.cell, 0.0, static_cast<double>(g.ny - 1));
-        const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
-        first = j * row + i;
-        fu = u - static_cast<double>(i), fv = v - static_cast<double>(j);
-    }
-    template <class Body>
-    void each(Body&& body) const {
-        for (Index b = 0; b < 2; ++b)
-            for (Index a = 0; a < 2; ++a) body(first + b * row + a, (a ? fu : 1.0 - fu) * (b ? fv : 1.0 - fv));
-    }
-};
+/// Calls body(node, weight) for the four nodes around a map point.
+template <class Body>
+void for_each_around(const GridGeometry& g, double x, double y, Body&& body) {
+    const NodeSquare at(g, x, y);
+    const Index first = at.j * g.nx + at.i;
+    for (Index b = 0; b < 2; ++b)
+        for (Index a = 0; a < 2; ++a) body(first + b * g.nx + a, (a ? at.s : 1.0 - at.s) * (b ? at.t : 1.0 - at.t));
+}
 
 }  // namespace
 
 Sample FlowMap::at(const Vec2& point) const {
     Sample sample;
     Vec3 flux(0, 0, 0);
-    Around(grid_, point.x(), point.y()).each([&](Index k, double w) {
+    for_each_around(grid_, point.x(), point.y(), [&](Index k, double w) {
         sample.depth += w * depth(k);
         flux += w * depth(k) * velocity(k);
     });
@@ -71,7 +63,7 @@ Sample FlowMap::at(const Vec2& point) const {
 FlowMap::Mean FlowMap::mean_at(const Vec2& point) const {
     Mean mean;
     Vec3 flux(0, 0, 0);
-    Around(grid_, point.x(), point.y()).each([&](Index k, double w) {
+    for_each_around(grid_, point.x(), point.y(), [&](Index k, double w) {
         const auto at = static_cast<std::size_t>(k);
         Node all = nodes_[at];
         if (!adjacent_.empty()) all.mass += adjacent_[at].mass, all.momentum += adjacent_[at].momentum;
@@ -92,7 +84,7 @@ void FlowMap::set_adjacent(const FlowColumns& columns) {
         const Vec2 along(columns.vx[c], columns.vy[c]);
         const Vec3 velocity(along.x(), along.y(), along.dot(Vec2(columns.slope_x[c], columns.slope_y[c])));
         const double middle = columns.bed[c] + 0.5 * columns.depth[c];
-        Around(grid_, columns.x[c], columns.y[c]).each([&](Index k, double share) {
+        for_each_around(grid_, columns.x[c], columns.y[c], [&](Index k, double share) {
             const double w = share * open_.narrowing(k, middle);
             Node& node = adjacent_[static_cast<std::size_t>(k)];
             if (node.mass == 0.0) adjacent_places_.push_back(k);
@@ -109,7 +101,7 @@ void FlowMap::sample(const Mpm3d& flow, double time) {
         const Vec3 x = flow.position(p);
         const double mass = flow.body().points.mass[p];
         const Vec3 momentum = mass * flow.velocity(p);
-        Around(grid_, x[0], x[1]).each([&](Index k, double share) {
+        for_each_around(grid_, x[0], x[1], [&](Index k, double share) {
             const double w = share * open_.narrowing(k, x[2]);
             Node& node = nodes_[static_cast<std::size_t>(k)];
             node.mass += w * mass;

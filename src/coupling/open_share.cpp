@@ -9,7 +9,7 @@
 
 #include "coupling/barriers.h"
 #include "coupling/solid_scene.h"
-#include "particles/bed_points.h"
+#include "terrain/bed_points.h"
 #include "terrain/part_of.h"
 
 namespace frana {
@@ -28,11 +28,13 @@ std::array<double, 4> limits_of(const Scene& scene) {
 }
 
 constexpr int kParts = 16;  ///< of two cells, each way
-using Taken = std::bitset<kParts * kParts>;
+constexpr int kAllParts = kParts * kParts;
+using Taken = std::bitset<kAllParts>;
 
 /// From a node to one of its parts [cells].
 Vec2 to_part(int part) {
-    return {2.0 * (part % kParts + 0.5) / kParts - 1.0, 2.0 * (part / kParts + 0.5) / kParts - 1.0};
+    const int column = part % kParts, row = part / kParts;
+    return {2.0 * (column + 0.5) / kParts - 1.0, 2.0 * (row + 0.5) / kParts - 1.0};
 }
 
 /// Of a part in what its node stands for.
@@ -59,7 +61,7 @@ public:
     void mark(const std::vector<Vec2>& corners, Takes&& takes) {
         for_each_node_around(corners, g_, [&](Index node, const Vec2& at) {
             Taken& taken = taken_[node];
-            for (int part = 0; part < kParts * kParts; ++part)
+            for (int part = 0; part < kAllParts; ++part)
                 if (takes(Vec2(at + g_.cell * to_part(part)))) taken.set(part);
         });
     }
@@ -102,7 +104,7 @@ struct Solid {
 double open_share(const Taken& taken) {
     constexpr double kNothing = 0.05;  // points there are on top
     double all = 0.0, open = 0.0;
-    for (int part = 0; part < kParts * kParts; ++part) {
+    for (int part = 0; part < kAllParts; ++part) {
         all += weight_of(part);
         if (!taken[part]) open += weight_of(part);
     }
@@ -110,7 +112,7 @@ double open_share(const Taken& taken) {
 }
 
 /// Up to where barriers take a node's parts [m].
-using Tops = std::array<double, kParts * kParts>;
+using Tops = std::array<double, kAllParts>;
 
 /// Of nodes that have some room on the bed, and not all. On the others nothing stands below a top.
 std::map<Index, Tops> tops_of(const std::vector<Solid>& solids, const Scene& scene, const std::vector<double>& at_bed) {
@@ -132,7 +134,7 @@ std::map<Index, Tops> tops_of(const std::vector<Solid>& solids, const Scene& sce
 std::map<double, double> shares_above(const Tops& tops, const Taken& by_sides) {
     std::map<double, double> above;
     double open = 0.0, all = 0.0;
-    for (int part = 0; part < kParts * kParts; ++part) {
+    for (int part = 0; part < kAllParts; ++part) {
         all += weight_of(part);
         if (!by_sides[part]) above[tops[static_cast<std::size_t>(part)]] += weight_of(part);
     }

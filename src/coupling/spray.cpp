@@ -7,9 +7,9 @@
 
 #include "convert/flow_columns.h"
 #include "observe/archive.h"
-#include "particles/bed_points.h"
 #include "scene/scene.h"
 #include "solid3d/mpm3d.h"
+#include "terrain/bed_points.h"
 
 namespace frana {
 

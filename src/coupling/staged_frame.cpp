@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "coupling/staged_run.h"
-#include "particles/bed_points.h"
+#include "terrain/bed_points.h"
 
 namespace frana {
 namespace {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "terrain/places.h"
+
 namespace frana {
 namespace {
 
@@ -28,25 +30,13 @@ struct PlaneSums {
     }
 };
 
-/// The four nodes around a column; its place in cells from the grid's first node.
-struct Corners {
-    double u, v;
-    Index i, j;
-
-    Corners(const GridGeometry& g, double x, double y)
-        : u(std::clamp((x - g.x0) / g.cell, 0.0, static_cast<double>(g.nx - 1))),
-          v(std::clamp((y - g.y0) / g.cell, 0.0, static_cast<double>(g.ny - 1))),
-          i(std::min(static_cast<Index>(u), g.nx - 2)),
-          j(std::min(static_cast<Index>(v), g.ny - 2)) {}
-};
-
 /// Sums at the nodes around columns, and at no others of the terrain.
 class SurfaceSums {
 public:
     SurfaceSums(const GridGeometry& g, const FlowColumns& columns) : geometry_(g), i_(g.nx), j_(g.ny) {
         Index i_end = 0, j_end = 0;
         for (std::size_t k = 0; k < columns.count(); ++k) {
-            const Corners c(g, columns.x[k], columns.y[k]);
+            const NodeSquare c(g, columns.x[k], columns.y[k]);
             i_ = std::min(i_, c.i), i_end = std::max(i_end, c.i + 2);
             j_ = std::min(j_, c.j), j_end = std::max(j_end, c.j + 2);
         }
@@ -56,13 +46,13 @@ public:
     /// Calls visit(sums, weight, place from the node in cells) for the four nodes around a column.
     template <class Visit>
     void each_corner(double x, double y, Visit&& visit) {
-        const Corners c(geometry_, x, y);
-        for (Index n = c.j; n <= c.j + 1; ++n)
-            for (Index m = c.i; m <= c.i + 1; ++m) {
-                const Vec2 from(c.u - static_cast<double>(m), c.v - static_cast<double>(n));
-                visit(sums_[static_cast<std::size_t>((n - j_) * row_ + m - i_)],
-                      (1.0 - std::abs(from.x())) * (1.0 - std::abs(from.y())), from);
-            }
+        const NodeSquare c(geometry_, x, y);
+        for (Index k = 0; k < 4; ++k) {
+            const NodeAt node = c.node(k);
+            const Vec2 from(c.s - static_cast<double>(node.i - c.i), c.t - static_cast<double>(node.j - c.j));
+            visit(sums_[static_cast<std::size_t>((node.j - j_) * row_ + node.i - i_)],
+                  (1.0 - std::abs(from.x())) * (1.0 - std::abs(from.y())), from);
+        }
     }
 
 private:

@@ -5,7 +5,7 @@
 
 #include "coupling/structured_run.h"
 #include "mpm/stencil.h"
-#include "particles/bed_points.h"
+#include "terrain/bed_points.h"
 
 namespace frana {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "particles/bed_points.h"
+#include "terrain/bed_points.h"
 
 namespace frana {
 namespace {

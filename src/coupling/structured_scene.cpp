@@ -8,7 +8,8 @@
 #include "coupling/structured_run.h"
 #include "coupling/water_sources.h"
 #include "mpm/stencil.h"
-#include "particles/bed_points.h"
+#include "terrain/bed_points.h"
+#include "terrain/places.h"
 
 namespace frana {
 namespace {
@@ -23,25 +24,19 @@ public:
           unrolled_(scene.structure && scene.structure->unrolled) {}
 
     GroundGravity operator()(double x, double y) const {
-        const GridGeometry& g = bed_.geometry;
-        const auto place = [&](double at, double start, Index count) {
-            return std::clamp((at - start) / g.cell, 0.0, static_cast<double>(count - 1));
-        };
-        const double u = place(x, g.x0, g.nx), v = place(y, g.y0, g.ny);
-        const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
-        const double fu = u - static_cast<double>(i), fv = v - static_cast<double>(j);
+        const NodeSquare around(bed_.geometry, x, y);
         Vec2 slope(0, 0);
         GroundGravity ground;
-        for (Index dj = 0; dj < 2; ++dj)
-            for (Index di = 0; di < 2; ++di) {
-                const double w = (di ? fu : 1.0 - fu) * (dj ? fv : 1.0 - fv);
-                if (w < 1e-9) continue;  // round-off of a place on a node
-                const double z = bed_.at(i + di, j + dj);
-                ground.exit = ground.exit || !std::isfinite(z);
-                ground.hole = ground.hole || is_hole(i + di, j + dj);
-                ground.elevation += w * z, slope += w * slope_at(i + di, j + dj);
-            }
-        if (ground.exit) ground.elevation = ground_near_hole(i, j), slope = Vec2(0, 0);
+        for (Index k = 0; k < 4; ++k) {
+            const double w = around.weight(k);
+            if (w < 1e-9) continue;  // round-off of a place on a node
+            const auto [i, j] = around.node(k);
+            const double z = bed_.at(i, j);
+            ground.exit = ground.exit || !std::isfinite(z);
+            ground.hole = ground.hole || is_hole(i, j);
+            ground.elevation += w * z, slope += w * slope_at(i, j);
+        }
+        if (ground.exit) ground.elevation = ground_near_hole(around.i, around.j), slope = Vec2(0, 0);
         // Along the ground the slope is a sine, on the map a tangent.
         const double drive = unrolled_ ? gravity_ : gravity_ / (1.0 + slope.squaredNorm());
         ground.across = unrolled_ ? gravity_ * std::sqrt(std::max(0.0, 1.0 - slope.squaredNorm())) : drive;

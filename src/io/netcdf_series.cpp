@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "io/gdal_crs.h"
 #include "io/gdal_support.h"
+#include "terrain/places.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -235,12 +236,12 @@ private:
     /// A moment's values on the grid of the last frame, which holds those of all others.
     static std::vector<float> plane(const Moment& moment, std::size_t variable, const GridGeometry& grid) {
         std::vector<float> values(static_cast<std::size_t>(grid.size()), kNothing);
-        const auto left = static_cast<Index>(std::lround((moment.grid.x0 - grid.x0) / grid.cell));
-        const auto low = static_cast<Index>(std::lround((moment.grid.y0 - grid.y0) / grid.cell));
+        const NodeAt first = first_node(moment.grid, grid);
         for (std::size_t k = 0; k < moment.nodes.size(); ++k) {
-            const Index i = moment.nodes[k] % moment.grid.nx + left, j = moment.nodes[k] / moment.grid.nx + low;
-            if (i < 0 || j < 0 || i >= grid.nx || j >= grid.ny) continue;
-            values[static_cast<std::size_t>(j * grid.nx + i)] = moment.values[variable * moment.nodes.size() + k];
+            const NodeAt node{moment.nodes[k] % moment.grid.nx + first.i, moment.nodes[k] / moment.grid.nx + first.j};
+            if (!has_node(grid, node)) continue;
+            values[static_cast<std::size_t>(node.j * grid.nx + node.i)] =
+                moment.values[variable * moment.nodes.size() + k];
         }
         return values;
     }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "terrain/places.h"
 
 namespace frana {
 namespace {
@@ -18,17 +19,12 @@ const Field& needed(const Frame& frame, const char* name) {
 }  // namespace
 
 std::vector<Corner> corners(const GridGeometry& grid, const Vec2& point) {
-    const double i = (point.x() - grid.x0) / grid.cell, j = (point.y() - grid.y0) / grid.cell;
-    if (!(i >= 0.0 && j >= 0.0 && i <= static_cast<double>(grid.nx - 1) && j <= static_cast<double>(grid.ny - 1)))
-        return {};
-    const Index left = std::min(static_cast<Index>(i), std::max<Index>(grid.nx - 2, 0));
-    const Index below = std::min(static_cast<Index>(j), std::max<Index>(grid.ny - 2, 0));
-    const double s = i - static_cast<double>(left), t = j - static_cast<double>(below);
-    const Index node = below * grid.nx + left;
+    if (!between_nodes(grid, point)) return {};
+    const NodeSquare around(grid, point);
     std::vector<Corner> result;
-    for (const Corner& corner : {Corner{node, (1 - s) * (1 - t)}, Corner{node + 1, s * (1 - t)},
-                                 Corner{node + grid.nx, (1 - s) * t}, Corner{node + grid.nx + 1, s * t}})
-        if (corner.weight > 0.0) result.push_back(corner);
+    for (Index k = 0; k < 4; ++k)
+        if (const double weight = around.weight(k); weight > 0.0)
+            result.push_back({around.node(k).j * grid.nx + around.node(k).i, weight});
     return result;
 }
 

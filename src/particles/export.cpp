@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "particles/bed_points.h"
+#include "terrain/bed_points.h"
 
 namespace frana {
 

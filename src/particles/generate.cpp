@@ -10,6 +10,7 @@
 #include "particles/lattice.h"
 #include "particles/material.h"
 #include "particles/scatter.h"
+#include "terrain/places.h"
 
 namespace frana {
 
@@ -92,10 +93,9 @@ void remark_bare_outline(const Material& material, const ReleaseReport& report, 
 /// Value of a raster's pixel at a map point, or `otherwise`.
 double pixel_or(const std::optional<Raster>& raster, double x, double y, double otherwise) {
     if (!raster) return otherwise;
-    const GridGeometry& g = raster->geometry;
-    const double u = std::floor((x - g.x0) / g.cell + 0.5), v = std::floor((y - g.y0) / g.cell + 0.5);
-    if (!(u >= 0.0 && v >= 0.0 && u < static_cast<double>(g.nx) && v < static_cast<double>(g.ny))) return otherwise;
-    const double value = raster->at(static_cast<Index>(u), static_cast<Index>(v));
+    const Index pixel = pixel_of(raster->geometry, x, y);
+    if (pixel < 0) return otherwise;
+    const double value = raster->values[static_cast<std::size_t>(pixel)];
     return std::isfinite(value) ? value : otherwise;
 }
 

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "base/error.h"
-#include "particles/bed_points.h"
+#include "terrain/bed_points.h"
 
 namespace frana {
 

@@ -15,6 +15,7 @@
 #include "scene/scene_parts.h"
 #include "scene/terrain_part.h"
 #include "terrain/holes.h"
+#include "terrain/places.h"
 
 namespace frana {
 namespace {
@@ -359,10 +360,8 @@ private:
 
     /// Within the part that is held, where the elevation model has no data.
     bool is_hole(const Vec2& point) const {
-        const GridGeometry& g = scene_.bed.geometry;
-        const auto i = static_cast<Index>(std::lround((point.x() - g.x0) / g.cell)),
-                   j = static_cast<Index>(std::lround((point.y() - g.y0) / g.cell));
-        return i >= 0 && j >= 0 && i < g.nx && j < g.ny && std::isnan(scene_.bed.at(i, j));
+        const NodeAt node = nearest_node(scene_.bed.geometry, point);
+        return has_node(scene_.bed.geometry, node) && std::isnan(scene_.bed.at(node.i, node.j));
     }
 
     std::string extent_text() const {

@@ -35,7 +35,7 @@ std::string repeated_table_of(const std::string& key) {
 
 /// The table of a key without numbers, known or not; empty: it has none.
 std::string table_of(const std::string& key) {
-    const std::string repeated = repeated_table_of(key);
+    std::string repeated = repeated_table_of(key);
     if (!repeated.empty()) return repeated;
     const std::size_t dot = key.rfind('.');
     return dot == std::string::npos ? "" : key.substr(0, dot);

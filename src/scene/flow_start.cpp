@@ -72,7 +72,7 @@ std::optional<Vec2> middle_of_first(const Scene& scene) {
 
 std::optional<Vec2> flow_start(const Scene& scene) {
     if (scene.particles.count() > 0) return middle_of(scene.particles);
-    if (const std::optional<Vec2> lake = middle_of_lake(scene)) return lake;
+    if (std::optional<Vec2> lake = middle_of_lake(scene)) return lake;
     return middle_of_first(scene);
 }
 

@@ -90,6 +90,7 @@ bool is_in(const std::vector<Polygon>& one, const std::vector<Polygon>& other, d
 std::vector<JoinedBarriers> joined_barriers(const std::vector<Barrier>& barriers, double cell) {
     const double seam = 1e-3 * cell;
     std::vector<std::vector<Polygon>> plans;
+    plans.reserve(barriers.size());
     for (const Barrier& barrier : barriers) plans.push_back(plan_of(barrier, cell));
     std::vector<JoinedBarriers> joined;
     for (std::size_t n = 0; n < plans.size(); ++n)

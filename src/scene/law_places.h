@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "law/catalogue.h"
 #include "scene/case_file.h"
@@ -38,6 +39,13 @@ Law law_of(const CaseFile& file, const LawPlace& of) {
         const bool number = file.has(key) && !file.is_text(key);  // a raster is for scene_friction.cpp
         return number ? std::optional<double>(file.number(key)) : std::nullopt;
     });
+}
+
+/// The numbers of a struct of parameters that a case has, each by its key in `table`.
+template <class Law>
+void read_numbers(const CaseFile& file, const std::string& table, const std::vector<laws::Key<Law>>& keys, Law& law) {
+    for (const laws::Key<Law>& key : keys)
+        if (file.has(table + key.name)) law.*key.parameter = key.convert(file.number(table + key.name));
 }
 
 }  // namespace frana

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "terrain/part_of.h"
+#include "terrain/places.h"
 
 namespace frana {
 namespace {
@@ -46,11 +47,8 @@ std::string place_text(const GridGeometry& g, std::size_t k) {
 }
 
 double pixel_at(const Raster& raster, double x, double y) {
-    const GridGeometry& g = raster.geometry;
-    const double i = std::floor((x - g.x0) / g.cell + 0.5), j = std::floor((y - g.y0) / g.cell + 0.5);
-    if (!(i >= 0.0 && j >= 0.0 && i < static_cast<double>(g.nx) && j < static_cast<double>(g.ny)))
-        return Raster::nodata;
-    return raster.at(static_cast<Index>(i), static_cast<Index>(j));
+    const Index pixel = pixel_of(raster.geometry, x, y);
+    return pixel < 0 ? Raster::nodata : raster.values[static_cast<std::size_t>(pixel)];
 }
 
 std::string nodes_text(const Scene& scene) {

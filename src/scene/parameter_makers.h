@@ -1,9 +1,11 @@
 #pragma once
 // How the rows of the parameter table are written down. Private to the files that hold the table.
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "law/catalogue.h"
 #include "scene/law_places.h"
 #include "scene/parameters.h"
@@ -130,6 +132,21 @@ void add_numbers(Table& table, const LawPlace& place) {
         if (!key.instead_of.empty()) row.instead_of = place.table + key.instead_of;
         table.push_back(with(row, place.choice, key.used_by, key.needed_by));
     }
+}
+
+/// The row of a key that a law's own list has, in `table`.
+template <class Law>
+Parameter of_law(const std::string& table, const std::vector<laws::Key<Law>>& keys, const std::string& name) {
+    const auto key = std::find_if(keys.begin(), keys.end(), [&](const auto& one) { return one.name == name; });
+    expect(key != keys.end(), "a key of the law's list");
+    Parameter row = number((table + name).c_str(), key->unit, key->range, key->meaning);
+    if (key->missing == laws::Missing::usual) {
+        const double usual = Law{}.*key->parameter;
+        expect(key->convert(usual) == usual, "a default that is the same in the key's unit");
+        row.fallback = usual;
+    }
+    if (*key->instead_of) row.instead_of = table + key->instead_of;
+    return row;
 }
 
 }  // namespace rows

@@ -1,4 +1,5 @@
 // The keys of [forest]: trees that take mass out of the flow.
+#include "law/detrainment_keys.h"
 #include "scene/parameter_makers.h"
 
 namespace frana {
@@ -14,10 +15,9 @@ void add_forest(Table& table) {
     table.push_back(absent(detrainment, "no trees take mass out of the flow"));
     table.push_back(absent(make("forest.outline", Kind::path, "", "polygons outside of which there is no forest"),
                            "forest wherever detrainment is above 0"));
-    table.push_back(absent(number("forest.max_speed", "m/s", positive, "along the bed, above which nothing is lost"),
-                           "flow of any speed from 0.1 m/s on loses mass"));
-    table.push_back(absent(number("forest.max_depth", "m", positive, "of the flow, above which nothing is lost"),
-                           "flow of any depth loses mass"));
+    const auto keys = laws::detrainment_keys();
+    table.push_back(absent(of_law("forest.", keys, "max_speed"), "flow of any speed from 0.1 m/s on loses mass"));
+    table.push_back(absent(of_law("forest.", keys, "max_depth"), "flow of any depth loses mass"));
 }
 
 }  // namespace frana

@@ -1,5 +1,5 @@
 // The keys of [material.structure]: solids that hold together.
-#include "law/structured_law.h"
+#include "law/structured_keys.h"
 #include "scene/parameter_makers.h"
 
 namespace frana {
@@ -7,7 +7,9 @@ namespace frana {
 void add_structure(Table& table) {
     using namespace rows;
     const char* const law = "material.structure.law";
-    const ColumnMaterial usual;
+    const auto of = [keys = laws::structured_keys()](const char* name) {
+        return of_law("material.structure.", keys, name);
+    };
     const std::vector<std::string> any_law = {"drucker_prager", "mohr_coulomb"};
     const auto used = [&](Parameter parameter) { return with(std::move(parameter), law, any_law); };
     const auto needed = [&](Parameter parameter) { return with(std::move(parameter), law, any_law, any_law); };
@@ -17,20 +19,13 @@ void add_structure(Table& table) {
                "the stress across the bed being given by the weight"));
     table.push_back(
         needed(number("material.structure.cohesion", "Pa", not_negative, "cohesion of the undamaged structure")));
-    table.push_back(
-        needed(number("material.structure.friction_angle_deg", "degree", {0.0, 90.0, true, true},
-                      "internal friction angle of the structure, and of the grains it falls to; at most 60 where "
-                      "they push by Rankine's coefficients")));
-    table.push_back(used(number("material.structure.dilatancy_angle_deg", "degree", {0.0, 90.0, false, true}, 0.0,
-                                "angle by which yielding makes room")));
+    table.push_back(needed(of("friction_angle_deg")));
+    table.push_back(used(of("dilatancy_angle_deg")));
     table.push_back(with(choice("material.structure.cone", {"triaxial", "plane_strain"}, "triaxial",
                                 "where drucker_prager is as strong as mohr_coulomb"),
                          law, {"drucker_prager"}));
-    table.push_back(needed(number("material.structure.young_modulus", "Pa", positive,
-                                  "stiffness; the stiffer, the more steps: twenty times the strength is enough")));
-    table.push_back(instead(used(number("material.structure.poisson_ratio", "1", {0.0, 0.5, true, true}, usual.poisson,
-                                        "share of a strain that shows across it")),
-                            "material.structure.bulk_modulus"));
+    table.push_back(needed(of("young_modulus")));
+    table.push_back(used(of("poisson_ratio")));
     table.push_back(
         absent(instead(used(number("material.structure.bulk_modulus", "Pa", positive,
                                    "stiffness against a change of volume, more than a third of young_modulus")),
@@ -50,15 +45,12 @@ void add_structure(Table& table) {
                     "what breaks bonds while the structure yields: plastic dilation in the plane (van den Bout et "
                     "al. 2021), the largest plastic strain in the plane, or any strain, exponentially (their "
                     "program)")));
-    table.push_back(used(number("material.structure.critical_strain", "1", positive, usual.critical_strain,
-                                "that strain at which no bond is left")));
+    table.push_back(used(of("critical_strain")));
     table.push_back(absent(used(number("material.structure.critical_length", "m", positive,
                                        "cell on which critical_strain holds; on others it is taken times "
                                        "critical_length / cell, so that a crack opens by the same way")),
                            "critical_strain holds on any cell"));
-    table.push_back(with(number("material.structure.onset", "1", not_negative, usual.onset,
-                                "strain before which damage = \"strain\" breaks nothing"),
-                         "material.structure.damage", {"strain"}));
+    table.push_back(with(of("onset"), "material.structure.damage", {"strain"}));
     table.push_back(used(number("material.structure.cfl", "1", above_to(0.0, 1.0), 0.4,
                                 "largest way of sound and flow in one time step, in cells")));
 }

@@ -1,6 +1,6 @@
 // The keys of [water]: free water, together with solids that hold together or alone.
-#include "law/free_water.h"
 #include "law/water_friction.h"
+#include "law/water_keys.h"
 #include "scene/parameter_makers.h"
 
 namespace frana {
@@ -26,7 +26,10 @@ void add_water_sides(Table& table) {
 void add_water(Table& table) {
     using namespace rows;
     const char* const model = "water.model";
-    const WaterExchange usual;
+    const auto of = [](const auto& keys, const char* name) { return of_law("water.", keys, name); };
+    const auto phases = laws::two_phase_keys();
+    const auto exchange = laws::water_exchange_keys();
+    const auto viscosity = laws::water_viscosity_keys();
     const auto used = [&](Parameter parameter) { return with(std::move(parameter), model, {"free"}); };
     table.push_back(choice(model, {"none", "free"}, "none",
                            "free: water on the grid. With material.structure it drags, bears and drains its columns; "
@@ -54,10 +57,8 @@ void add_water(Table& table) {
     table.push_back(
         used(choice(kWaterPlace.choice, laws::Catalogue<WaterLaw>::words(), "none", "friction of water at the bed")));
     add_numbers<WaterLaw>(table, kWaterPlace);
-    table.push_back(used(
-        number("water.density", "kg/m^3", positive, usual.material.fluid_density, "of the water, confined or free")));
-    table.push_back(used(number("water.viscosity", "Pa s", positive, usual.material.viscosity,
-                                "of clear water; grains settle in it or in mud")));
+    table.push_back(used(of(phases, "density")));
+    table.push_back(used(of(phases, "viscosity")));
     table.push_back(
         used(choice("water.viscous", {"none", "clear", "mud"}, "none",
                     "viscosity that the flow of the water feels at the bed and inside: none, that of clear water, "
@@ -73,23 +74,15 @@ void add_water(Table& table) {
     table.push_back(viscous(number("water.mud_concentration", "1", {0.0, 1.0, false, true},
                                    "share of fines in the volume of the free water"),
                             {"mud"}, {"mud"}));
-    table.push_back(viscous(number("water.bed_shear", "1", not_negative, 3.0,
-                                   "viscous stress at the bed over viscosity times speed over depth; 3: a parabola"),
-                            {"clear", "mud"}));
-    table.push_back(
-        used(number("water.grain_diameter", "m", positive, usual.material.grain, "of grains, for their drag")));
-    table.push_back(used(number("water.block_diameter", "m", positive, usual.material.block,
-                                "of blocks of what has structure, for their drag")));
+    table.push_back(viscous(of(viscosity, "bed_shear"), {"clear", "mud"}));
+    table.push_back(used(of(phases, "grain_diameter")));
+    table.push_back(used(of(phases, "block_diameter")));
     table.push_back(
         viscous(flag("water.solid_gradient", false,
                      "viscous stress of water that slips along a gradient of the columns' share (van den Bout et "
                      "al. 2021, eq. 30); it takes no energy by itself and may feed slip"),
                 {"clear", "mud"}));
-    table.push_back(
-        viscous(number("water.profile_factor", "1", not_negative, 0.0,
-                       "xi of that term, of how grains are spread over the depth: 0 evenly, 3 as a parabola; left "
-                       "out where drag does not dominate it"),
-                {"clear", "mud"}));
+    table.push_back(viscous(of(viscosity, "profile_factor"), {"clear", "mud"}));
     table.push_back(
         used(choice("water.drag", {"split", "unsplit"}, "split",
                     "split: blocks of what holds together and grains have each their own (van den Bout et al. "
@@ -97,17 +90,14 @@ void add_water(Table& table) {
     Parameter power =
         make("water.drag_power", Kind::integer, "1", "drag grows with the slip (1) or with its square (2)");
     power.range = between(1.0, 2.0);
-    power.fallback = static_cast<double>(usual.material.power);
+    power.fallback = static_cast<double>(TwoPhaseMaterial{}.power);
     table.push_back(used(power));
     table.push_back(
         used(choice("water.virtual_mass", {"none", "bounded", "unbounded"}, "none",
                     "water that solids speed up with them: Pudasaini and Mergili (2019), or Pudasaini (2012), "
                     "which grows without bound where there is little water")));
-    table.push_back(
-        used(number("water.pore_pressure", "1", fraction, usual.pore_pressure,
-                    "share of the pores' pressure that bears the columns on the bed where pores are full")));
-    table.push_back(used(number("water.void_ratio", "1", positive, usual.void_ratio,
-                                "free water over grains and their confined water that fills the pores")));
+    table.push_back(used(of(exchange, "pore_pressure")));
+    table.push_back(used(of(exchange, "void_ratio")));
 }
 
 }  // namespace frana

@@ -10,6 +10,7 @@
 #include "scene/barriers_of_case.h"
 #include "scene/joined_barriers.h"
 #include "scene/scene_parts.h"
+#include "terrain/bed_points.h"
 #include "terrain/outline_nodes.h"
 #include "terrain/part_of.h"
 

@@ -165,31 +165,6 @@ double cut_release(const Release& release, Raster& bed) {
     return total;
 }
 
-double bilinear(const Raster& raster, const Vec2& point) {
-    const GridGeometry& grid = raster.geometry;
-    const double u = (point.x() - grid.x0) / grid.cell;
-    const double v = (point.y() - grid.y0) / grid.cell;
-    const double rim = 0.5 + 1e-6;  // pixels reach half a cell beyond the nodes; coordinates round
-    const bool inside = u >= -rim && v >= -rim && u <= double(grid.nx - 1) + rim && v <= double(grid.ny - 1) + rim;
-    if (!inside) return Raster::nodata;
-    const auto base = [](double t, Index n) {
-        return std::clamp<Index>(static_cast<Index>(std::floor(t)), 0, std::max<Index>(0, n - 2));
-    };
-    const Index i = base(u, grid.nx);
-    const Index j = base(v, grid.ny);
-    const double fx = std::clamp(u - double(i), 0.0, 1.0);
-    const double fy = std::clamp(v - double(j), 0.0, 1.0);
-    double sum = 0.0;
-    const auto add = [&](Index di, Index dj, double weight) {
-        if (weight > 0.0) sum += weight * raster.at(i + di, j + dj);  // a NaN without weight does not count
-    };
-    add(0, 0, (1 - fx) * (1 - fy));
-    add(1, 0, fx * (1 - fy));
-    add(0, 1, (1 - fx) * fy);
-    add(1, 1, fx * fy);
-    return sum;
-}
-
 Vec2 node_gradient(const Raster& raster, Index i, Index j) {
     const GridGeometry& grid = raster.geometry;
     if (i > 0 && j > 0 && i + 1 < grid.nx &&

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "law/detrainment_keys.h"
+#include "scene/law_places.h"
 #include "scene/nodes_of_place.h"
 
 namespace frana {
@@ -82,8 +84,7 @@ std::optional<Forest> read_forest(const CaseFile& file, const GisReader& reader,
         !problems.attempt(file.place("forest.outline"), [&] { clear_outside(file, reader, scene, forest.pressure); }))
         return {};
     if (!any_forest(file, scene, forest.pressure)) return {};
-    if (file.given("forest.max_speed")) forest.law.max_speed = file.number("forest.max_speed");
-    if (file.given("forest.max_depth")) forest.law.max_depth = file.number("forest.max_depth");
+    read_numbers(file, "forest.", laws::detrainment_keys(), forest.law);
     return forest;
 }
 

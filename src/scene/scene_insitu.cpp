@@ -6,6 +6,7 @@
 #include <map>
 
 #include "scene/scene_parts.h"
+#include "terrain/bed_points.h"
 
 namespace frana {
 namespace {

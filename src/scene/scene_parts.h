@@ -132,9 +132,6 @@ double hole_wall_height(const Scene& scene);
 /// goes to `problems`.
 void wall_holes(const CaseFile& file, Scene& scene, Problems& problems);
 
-/// Value between the nodes, bilinear; NaN where a node with weight is NaN or the point lies beyond the
-/// pixels.
-double bilinear(const Raster& raster, const Vec2& point);
 /// Gradient at a node by central differences, one-sided next to nodata and at the edge [unit of raster per m].
 Vec2 node_gradient(const Raster& raster, Index i, Index j);
 

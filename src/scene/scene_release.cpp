@@ -10,6 +10,7 @@
 #include "base/layer_name.h"
 #include "scene/nodes_of_place.h"
 #include "scene/scene_parts.h"
+#include "terrain/bed_points.h"
 
 namespace frana {
 namespace {

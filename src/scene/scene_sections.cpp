@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scene/scene_parts.h"
+#include "terrain/places.h"
 
 namespace frana {
 
@@ -26,10 +27,9 @@ double rise_across(const Polyline& line, const Raster& bed) {
         for (Index part = 0; part < parts; ++part) {
             const double share = (static_cast<double>(part) + 0.5) / static_cast<double>(parts);
             const Vec2 at = line[k] + share * piece;
-            const auto i = static_cast<Index>(std::lround((at.x() - g.x0) / g.cell));
-            const auto j = static_cast<Index>(std::lround((at.y() - g.y0) / g.cell));
-            if (i < 0 || j < 0 || i >= g.nx || j >= g.ny || std::isnan(bed.at(i, j))) continue;
-            sum += node_gradient(bed, i, j).dot(right) / static_cast<double>(parts);
+            const NodeAt node = nearest_node(g, at);
+            if (!has_node(g, node) || std::isnan(bed.at(node.i, node.j))) continue;
+            sum += node_gradient(bed, node.i, node.j).dot(right) / static_cast<double>(parts);
             length += piece.norm() / static_cast<double>(parts);
         }
     }

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/constants.h"
+#include "law/structured_keys.h"
+#include "scene/law_places.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
@@ -25,18 +26,14 @@ public:
         structure.confined = number("confined_water");
         structure.unrolled = case_.flag("terrain.unrolled");
         ColumnMaterial& m = structure.material;
-        m.young = number("young_modulus");
-        m.poisson = poisson(m.young);
-        m.friction = number("friction_angle_deg") * constants::kDegree;
+        read_numbers(case_, key(""), laws::structured_keys(), m);
+        if (given("bulk_modulus")) m.poisson = poisson(m.young);
         if (!structure.hydrostatic) refuse_steep_friction();
-        m.dilatancy = number("dilatancy_angle_deg") * constants::kDegree;
         m.yield = yield();
         m.damage_by = damage_by();
-        m.critical_strain = number("critical_strain");
         if (given("critical_length"))
             m.critical_strain = critical_strain(m.critical_strain, number("critical_length"), scene_.bed.geometry.cell);
         if (structure.unrolled) require_sines();
-        if (m.damage_by == DamageBy::strain) m.onset = number("onset");
         if (m.dilatancy > m.friction)
             problems_.add(case_.place(key("dilatancy_angle_deg")),
                           fmt::format("found {:.6g}", number("dilatancy_angle_deg")),
@@ -67,7 +64,6 @@ private:
     }
 
     double poisson(double young) {
-        if (!given("bulk_modulus")) return number("poisson_ratio");
         const double bulk = number("bulk_modulus");
         if (young < 3.0 * bulk) return (3.0 * bulk - young) / (6.0 * bulk);
         problems_.add(case_.place(key("bulk_modulus")),

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "law/water_keys.h"
 #include "scene/law_places.h"
 #include "scene/nodes_of_place.h"
 #include "scene/remarks.h"
@@ -75,8 +76,8 @@ double viscosity_of(const CaseFile& file, Scene& scene) {
 WaterExchange exchange_of(const CaseFile& file, double viscosity, const Scene& scene) {
     WaterExchange exchange;
     TwoPhaseMaterial& m = exchange.material;
-    m.fluid_density = number(file, "density"), m.viscosity = viscosity, m.gravity = scene.gravity;
-    m.grain = number(file, "grain_diameter"), m.block = number(file, "block_diameter");
+    read_numbers(file, "water.", laws::two_phase_keys(), m);
+    m.viscosity = viscosity, m.gravity = scene.gravity;
     m.split = file.word("water.drag") == "split";
     m.power = static_cast<int>(number(file, "drag_power"));
     if (scene.structure) {
@@ -87,7 +88,7 @@ WaterExchange exchange_of(const CaseFile& file, double viscosity, const Scene& s
     exchange.virtual_mass = inertia == "none"        ? VirtualMass::none
                             : inertia == "unbounded" ? VirtualMass::unbounded
                                                      : VirtualMass::bounded;
-    exchange.pore_pressure = number(file, "pore_pressure"), exchange.void_ratio = number(file, "void_ratio");
+    read_numbers(file, "water.", laws::water_exchange_keys(), exchange);
     return exchange;
 }
 
@@ -264,9 +265,11 @@ std::optional<WaterPhase> read_water(const CaseFile& file, const GisReader& read
     water.friction = water_friction(file);
     const double viscosity = viscosity_of(file, scene);
     water.exchange = exchange_of(file, viscosity, scene);
-    if (file.word("water.viscous") != "none")
-        water.viscosity = {viscosity / water.exchange.material.fluid_density, number(file, "bed_shear"),
-                           file.flag("water.solid_gradient"), number(file, "profile_factor")};
+    if (file.word("water.viscous") != "none") {
+        water.viscosity.kinematic = viscosity / water.exchange.material.fluid_density;
+        water.viscosity.solid_gradient = file.flag("water.solid_gradient");
+        read_numbers(file, "water.", laws::water_viscosity_keys(), water.viscosity);
+    }
     refuse_endless_steps(file, water, scene, problems);
     if (scene.structure) refuse_light_grains(file, water.exchange.material, scene, problems);
     require_ground(file, scene, problems);

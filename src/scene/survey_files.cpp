@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scene/scene_parts.h"
+#include "terrain/places.h"
 
 namespace frana {
 namespace {
@@ -12,12 +13,11 @@ namespace {
 /// Whether any node of `grid` has a value in a raster on the same pixels. The raster may have more or fewer of them.
 bool known_on(const Raster& raster, const GridGeometry& grid) {
     const GridGeometry& g = raster.geometry;
-    const auto left = static_cast<Index>(std::lround((grid.x0 - g.x0) / g.cell));
-    const auto low = static_cast<Index>(std::lround((grid.y0 - g.y0) / g.cell));
+    const NodeAt first = first_node(grid, g);
     for (Index j = 0; j < grid.ny; ++j)
         for (Index i = 0; i < grid.nx; ++i) {
-            const Index si = i + left, sj = j + low;
-            if (si >= 0 && sj >= 0 && si < g.nx && sj < g.ny && std::isfinite(raster.at(si, sj))) return true;
+            const NodeAt node{i + first.i, j + first.j};
+            if (has_node(g, node) && std::isfinite(raster.at(node.i, node.j))) return true;
         }
     return false;
 }

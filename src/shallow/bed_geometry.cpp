@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "scene/bed_smoothing.h"
+#include "terrain/places.h"
 
 namespace frana {
 namespace {
@@ -289,8 +290,8 @@ struct Depths {
 
     Depths(const std::vector<ScarNode>& nodes, const GridGeometry& g) {
         const auto place = [&](const ScarNode& node) {
-            return std::array<Index, 2>{std::lround((node.at.x() - g.x0) / g.cell),
-                                        std::lround((node.at.y() - g.y0) / g.cell)};
+            const NodeAt nearest = nearest_node(g, node.at);
+            return std::array<Index, 2>{nearest.i, nearest.j};
         };
         auto low = place(nodes.front()), high = low;
         for (const ScarNode& node : nodes)

@@ -6,6 +6,7 @@
 #include "mpm/stencil.h"
 #include "shallow/depth_averaged.h"
 #include "shallow/sheet.h"
+#include "terrain/places.h"
 
 namespace frana {
 namespace {
@@ -108,17 +109,16 @@ Sample DepthAveraged::at(const Vec2& point) const {
     const double u = std::clamp((point.x() - g.x0) / g.cell, 0.0, static_cast<double>(g.nx - 1));
     const double v = std::clamp((point.y() - g.y0) / g.cell, 0.0, static_cast<double>(g.ny - 1));
     Sample sample;
-    const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
-    const double fu = u - static_cast<double>(i), fv = v - static_cast<double>(j);
-    for (Index dj = 0; dj < 2; ++dj)
-        for (Index di = 0; di < 2; ++di) {
-            const double w = (di ? fu : 1.0 - fu) * (dj ? fv : 1.0 - fv);
-            const Index k = flow_.grid.at(i + di, j + dj);
-            sample.elevation += w * flow_.bed.z[k];
-            if (!flow_.is_in_reach(i + di, j + dj)) continue;
-            sample.depth += w * own_depth(k);
-            sample.velocity += w * Vec2(flow_.nodes.before[k].x, flow_.nodes.before[k].y);
-        }
+    const NodeSquare around(g, point);
+    for (Index n = 0; n < 4; ++n) {
+        const auto [i, j] = around.node(n);
+        const double w = around.weight(n);
+        const Index k = flow_.grid.at(i, j);
+        sample.elevation += w * flow_.bed.z[k];
+        if (!flow_.is_in_reach(i, j)) continue;
+        sample.depth += w * own_depth(k);
+        sample.velocity += w * Vec2(flow_.nodes.before[k].x, flow_.nodes.before[k].y);
+    }
     const BedHere bed = bed_at(flow_, steep_, curved_, u, v);
     sample.speed =
         std::hypot(sample.velocity.x(), sample.velocity.y(), sample.velocity.dot(Vec2(bed.path_x, bed.path_y)));

@@ -40,7 +40,7 @@ double share_of_smooth(const DistanceField& shape, const Contact& contact, const
 }  // namespace
 
 Contact sharp_contact(const DistanceField& shape, const Vec3& x) {
-    const Contact found = shape.contact(x);
+    Contact found = shape.contact(x);
     if (shape.sharp.empty()) return found;
     // Where the field errs by more than a spacing, the face is another one than those at the edge.
     const Near near(shape, x, kDiagonal * std::abs(found.distance) + 2.0 * shape.spacing, 0.0);

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "structured/node_water.h"
+#include "terrain/places.h"
 
 namespace frana {
 
@@ -110,21 +111,16 @@ bool StructuredMap::is_in_reach(const StructuredBody& body, Index i, Index j) {
 
 void StructuredMap::sample(const StructuredBody& body, const WaterFlow* water, const Vec2& point, double& depth,
                            Vec2& velocity) {
-    const GridGeometry& g = body.grid.geometry();
-    const double u = std::clamp((point.x() - g.x0) / g.cell, 0.0, static_cast<double>(g.nx - 1));
-    const double v = std::clamp((point.y() - g.y0) / g.cell, 0.0, static_cast<double>(g.ny - 1));
-    const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
-    const double fu = u - static_cast<double>(i), fv = v - static_cast<double>(j);
+    const NodeSquare around(body.grid.geometry(), point);
     depth = 0.0;
     double inertia = 0.0;
     Vec2 momentum(0, 0);
-    for (Index dj = 0; dj < 2; ++dj)
-        for (Index di = 0; di < 2; ++di) {
-            const Standing node = on_node(body, water, i + di, j + dj);
-            const double w = (di ? fu : 1.0 - fu) * (dj ? fv : 1.0 - fv);
-            depth += w * node.depth;
-            inertia += w * node.inertia, momentum += w * node.inertia * node.velocity;
-        }
+    for (Index k = 0; k < 4; ++k) {
+        const Standing node = on_node(body, water, around.node(k).i, around.node(k).j);
+        const double w = around.weight(k);
+        depth += w * node.depth;
+        inertia += w * node.inertia, momentum += w * node.inertia * node.velocity;
+    }
     velocity = inertia > 0.0 ? Vec2(momentum / inertia) : Vec2(0, 0);
 }
 

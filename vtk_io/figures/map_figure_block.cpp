@@ -19,6 +19,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "terrain/places.h"
+
 namespace frana {
 namespace {
 
@@ -37,14 +39,7 @@ vtkSmartPointer<vtkTexture> as_texture(const Pixels& picture) {
 
 /// Linear between the nodes; NaN outside or next to a NaN node.
 double height_at(const Raster& surface, const Vec2& p) {
-    const GridGeometry& g = surface.geometry;
-    const double u = (p.x() - g.x0) / g.cell, v = (p.y() - g.y0) / g.cell;
-    if (u < 0.0 || v < 0.0 || u > static_cast<double>(g.nx - 1) || v > static_cast<double>(g.ny - 1))
-        return Raster::nodata;
-    const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
-    const double s = u - static_cast<double>(i), t = v - static_cast<double>(j);
-    return (1 - t) * ((1 - s) * surface.at(i, j) + s * surface.at(i + 1, j)) +
-           t * ((1 - s) * surface.at(i, j + 1) + s * surface.at(i + 1, j + 1));
+    return between_nodes(surface.geometry, p) ? NodeSquare(surface.geometry, p).value(surface) : Raster::nodata;
 }
 
 /// The line with points no further apart than `step` [m].

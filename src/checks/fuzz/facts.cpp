@@ -8,6 +8,7 @@
 #include "coupling/staged_run.h"
 #include "coupling/structured_run.h"
 #include "shallow/depth_averaged.h"
+#include "terrain/places.h"
 
 namespace frana::stress {
 namespace {
@@ -119,11 +120,10 @@ void learn_release(const Scene& scene, Facts& facts) {
 double highest_around(const Raster& bed, const Vec2& at) {
     constexpr Index kAround = 8;
     const GridGeometry& g = bed.geometry;
-    const auto i0 = static_cast<Index>(std::lround((at.x() - g.x0) / g.cell));
-    const auto j0 = static_cast<Index>(std::lround((at.y() - g.y0) / g.cell));
+    const NodeAt middle = nearest_node(g, at);
     double highest = -std::numeric_limits<double>::infinity();
-    for (Index j = std::max<Index>(0, j0 - kAround); j <= std::min(g.ny - 1, j0 + kAround); ++j)
-        for (Index i = std::max<Index>(0, i0 - kAround); i <= std::min(g.nx - 1, i0 + kAround); ++i)
+    for (Index j = std::max<Index>(0, middle.j - kAround); j <= std::min(g.ny - 1, middle.j + kAround); ++j)
+        for (Index i = std::max<Index>(0, middle.i - kAround); i <= std::min(g.nx - 1, middle.i + kAround); ++i)
             if (std::isfinite(bed.at(i, j))) highest = std::max(highest, bed.at(i, j));
     return highest;
 }

@@ -6,6 +6,7 @@
 #include "base/constants.h"
 #include "checks/verify/lakes.h"
 #include "checks/verify/library.h"
+#include "terrain/places.h"
 
 namespace frana::verify {
 namespace {
@@ -16,14 +17,7 @@ struct Table1 {
 };
 
 /// Bed at a place between four nodes, bilinear as for the paper's points [m].
-double bed_at(const Raster& bed, double x, double y) {
-    const GridGeometry& g = bed.geometry;
-    const double u = (x - g.x0) / g.cell, v = (y - g.y0) / g.cell;
-    const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
-    const double a = u - static_cast<double>(i), b = v - static_cast<double>(j);
-    return (1 - b) * ((1 - a) * bed.at(i, j) + a * bed.at(i + 1, j)) +
-           b * ((1 - a) * bed.at(i, j + 1) + a * bed.at(i + 1, j + 1));
-}
+double bed_at(const Raster& bed, double x, double y) { return NodeSquare(bed.geometry, x, y).value(bed); }
 
 void add_errors(const Trial& trial, const Frame& frame, double level, Table1& table) {
     const double *h = frame.particle("depth")->data, *v = frame.particle("velocity")->data;
@@ -89,8 +83,8 @@ Scene obstacle(const Setup& setup) {
 
 /// Depth of the node nearest to a place [m].
 double depth_near(const Frame& frame, double x, double y) {
-    const GridGeometry& g = frame.grid;
-    return frame.node("depth")->data[std::lround((y - g.y0) / g.cell) * g.nx + std::lround((x - g.x0) / g.cell)];
+    const NodeAt node = nearest_node(frame.grid, x, y);
+    return frame.node("depth")->data[node.j * frame.grid.nx + node.i];
 }
 
 Measurement run_obstacle(const Setup& setup) {

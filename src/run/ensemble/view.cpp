@@ -10,6 +10,7 @@
 #include "run/ensemble/outcomes.h"
 #include "run/web/web_page.h"
 #include "scene/parameters.h"
+#include "terrain/places.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -47,8 +48,8 @@ public:
             if (!(share > 0.0)) share = Raster::nodata;
         const Raster part = part_with_values(came);
         k_ = blocks_for(part);
-        i0_ = std::lround((part.geometry.x0 - whole_.x0) / whole_.cell);
-        j0_ = std::lround((part.geometry.y0 - whole_.y0) / whole_.cell);
+        const NodeAt first = first_node(part.geometry, whole_);
+        i0_ = first.i, j0_ = first.j;
         raster = largest_in_blocks(part, k_);
         for (const double share : raster.values) rows_.push_back(std::isnan(share) ? -1 : count++);
     }

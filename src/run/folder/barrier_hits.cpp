@@ -98,6 +98,7 @@ BarrierHit hit_on(const Polygons& outline, const std::vector<ProductRaster>& ras
 
 std::vector<BarrierHit> hits_on(const std::vector<Barrier>& barriers, const std::vector<ProductRaster>& rasters) {
     std::vector<BarrierHit> hits;
+    hits.reserve(barriers.size());
     for (const Barrier& barrier : barriers) hits.push_back(hit_on(barrier.outline, rasters));
     return hits;
 }

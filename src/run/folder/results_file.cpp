@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "observe/profiles.h"
+#include "terrain/places.h"
 
 namespace frana {
 namespace {
@@ -44,9 +45,9 @@ PeaksThere peaks_at(const std::vector<Vec2>& places, const std::vector<ProductRa
     };
     const GridGeometry& grid = rasters.front().raster.geometry;
     for (const Vec2& place : places) {
-        const auto i = static_cast<Index>(std::lround((place.x() - grid.x0) / grid.cell));
-        const auto j = static_cast<Index>(std::lround((place.y() - grid.y0) / grid.cell));
-        if (i < 0 || j < 0 || i >= grid.nx || j >= grid.ny || !(value("peak_depth", i, j) > 0.0)) continue;
+        const NodeAt node = nearest_node(grid, place);
+        const auto [i, j] = node;
+        if (!has_node(grid, node) || !(value("peak_depth", i, j) > 0.0)) continue;
         peaks.depth = std::fmax(peaks.depth, value("peak_depth", i, j));
         peaks.speed = std::fmax(peaks.speed, value("peak_speed", i, j));
         peaks.pressure = std::fmax(peaks.pressure, value("peak_dynamic_pressure", i, j));

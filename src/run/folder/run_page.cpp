@@ -42,7 +42,7 @@ std::string measured(double value, const char* unit) {
 }
 
 std::string end_of(const PlainJson& record) {
-    const std::string reason = record.value("exit_reason", "");
+    std::string reason = record.value("exit_reason", "");
     if (reason == "rest") return "the mass came to rest";
     if (reason == "end") return "the simulated time was over";
     if (reason == "until") return "it was to go on until then (--until)";
@@ -56,7 +56,7 @@ double released_in_all(const PlainJson& record) {
 }
 
 std::vector<std::pair<std::string, std::string>> facts_of(const PlainJson& record) {
-    const PlainJson results = record.at("results"), mass = record.at("budgets").at("mass");
+    const PlainJson &results = record.at("results"), &mass = record.at("budgets").at("mass");
     std::vector<std::pair<std::string, std::string>> facts = {
         {"Released", measured(released_in_all(record), "m\u00b3")},
         {"Farthest front", measured(results.at("max_front"), "m")},
