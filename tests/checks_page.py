@@ -42,7 +42,12 @@ def renewed(page, table):
             raise SystemExit(f"{problem} has no error of {name} in tests/verification.txt")
         order = f" {order}" if name == "depth" else ""
         return f"| {what}`{problem}` | {of} | {cells} | {figures(errors[name])} |{order} |"
-    page = re.sub(r"^\| (.*)`(\w+)` \| (`?\w+`?(?: \[m/s\])?) \| \d+ \| [\d.e-]+ \|.*\|$", row, page, flags=re.M)
+    page, count = re.subn(r"^\| (.*)`(\w+)` \| (`?\w+`?(?: \[m/s\])?) \| \d+ \| [\d.e-]+ \|.*\|$", row, page, flags=re.M)
+    accuracy = page.split("\n## ")[1]
+    rows_there = sum(line.startswith("|") for line in accuracy.splitlines()) - 2
+    if count != rows_there:
+        raise SystemExit(f"src/checks/README.md: found {rows_there} rows of accuracy, of which {count} can be read; "
+                         "expected what, problem, error's name, cells, error, order")
     missed = len(re.findall(r"^missed", table, re.M))
     return re.sub(r"Goals that are missed: \d+\.", f"Goals that are missed: {missed}.", page)
 

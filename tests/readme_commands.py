@@ -13,6 +13,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 import time
 import tomllib
 
@@ -23,7 +24,8 @@ LISTED = os.path.join(HERE, "readme_commands.toml")
 
 def pages(source):
     for folder, folders, files in os.walk(source):
-        folders[:] = sorted(f for f in folders if not f.startswith((".", PAGES_APART)) and f != "out")
+        folders[:] = sorted(f for f in folders if not f.startswith((".", PAGES_APART)) and f not in ("out", "node_modules")
+                            and not os.path.exists(os.path.join(folder, f, "pyvenv.cfg")))
         for name in sorted(files):
             if name.endswith(".md"):
                 with open(os.path.join(folder, name), encoding="utf-8") as text:
@@ -60,8 +62,11 @@ def as_it_stands(command, number):
 
 def known_tests(build):
     """What each test of this build runs, by name; nothing of those that a build with more switched on has."""
-    asked = ["ctest", "--test-dir", build, "--show-only=json-v1"]
-    listed = subprocess.run(asked, stdout=subprocess.PIPE, check=True).stdout
+    with tempfile.TemporaryDirectory() as apart:  # in the build itself it would clear the log of the run that this is part of
+        with open(os.path.join(apart, "CTestTestfile.cmake"), "w", encoding="utf-8") as text:
+            text.write(f'subdirs("{os.path.abspath(build)}")\n')
+        asked = ["ctest", "--test-dir", apart, "--show-only=json-v1"]
+        listed = subprocess.run(asked, stdout=subprocess.PIPE, check=True).stdout
     with open(os.path.join(HERE, "CMakeLists.txt"), encoding="utf-8") as text:
         tests = {name: "" for name in re.findall(r"add_test\(NAME (\w+)", text.read())}
     for test in json.loads(listed)["tests"]:

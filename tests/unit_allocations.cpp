@@ -23,6 +23,14 @@ void* operator new(std::size_t size, const std::nothrow_t&) noexcept {  // sanit
     ++allocations;
     return std::malloc(size);
 }
+void* operator new(std::size_t size, std::align_val_t align) {
+    ++allocations;
+    const auto to = static_cast<std::size_t>(align);
+    if (void* block = std::aligned_alloc(to, (size + to - 1) / to * to)) return block;
+    throw std::bad_alloc();
+}
+void operator delete(void* block, std::align_val_t) noexcept { std::free(block); }
+void operator delete(void* block, std::size_t, std::align_val_t) noexcept { std::free(block); }
 void operator delete(void* block) noexcept { std::free(block); }
 void operator delete(void* block, std::size_t) noexcept { std::free(block); }
 
@@ -98,6 +106,27 @@ TEST_CASE("Warm steps among trees allocate nothing", "[speed][forest]") {
     CHECK(counted >= 20);
     CHECK(most == 0);
     CHECK(simulation.status().bed.deposited > before);
+}
+
+TEST_CASE("Warm steps over a loose bed allocate nothing", "[speed][erosion]") {
+    Scene scene = verify::scene_on(120, 60, 2.0, [](double x, double) { return -0.5 * x; });
+    scene.density = 1800.0;
+    scene.bed_law = bed::Voellmy{0.3, 1000.0};
+    scene.scheme.split = false;  // arrays grow with the number of points
+    verify::fill(scene, [](double x, double y) { return x > 20 && x < 80 && y > 20 && y < 90 ? 2.0 : 0.0; }, {2});
+    ErodibleBed bed;
+    bed.depth = Raster::filled(scene.bed.geometry, 1.0);
+    bed.density = scene.density;
+    bed.law = erosion::Growth{1e-3};
+    scene.erodible = bed;
+    DepthAveraged simulation(scene);
+    for (int step = 0; step < 30; ++step) simulation.advance(1e9);
+    const double before = simulation.status().bed.eroded;
+    const auto [most, counted] =
+        asked_when_warm(simulation, 40, [&]() -> const ActiveTiles& { return simulation.flow().active; });
+    CHECK(counted >= 20);
+    CHECK(most == 0);
+    CHECK(simulation.status().bed.eroded > before);
 }
 
 TEST_CASE("Warm steps in 3D allocate nothing", "[speed][solid]") {

@@ -215,8 +215,8 @@ TEST_CASE("What an inflow lets in on top of a barrier is told", "[barriers]") {
     scene.end = 10.1;
     // The house has 8 m of the 40 m through which 200 m3 come by 10 s. A row of 0.2 s is not whole by the end.
     const std::string torrent =
-        "inflow torrent: found 40 m3 of it that enter on top of barriers; expected none, since it "
-        "falls from there; move it off their outlines";
+        "inflow torrent: found 40 m3 of it that enter on top of barriers by time.end; expected none, since it "
+        "falls from there; move it off their outlines, or cut them out of its area";
     CHECK(WalledColumns(scene).remarks() == std::vector<std::string>{torrent});
     Inflow area;
     area.name = "spring";

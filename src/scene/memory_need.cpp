@@ -25,6 +25,8 @@ constexpr double part_node_rate = 160.0;
 constexpr double structure_rate = 75.0, water_rate = 200.0;
 /// Likewise of an erodible bed: seven numbers with its depth, two more where the bed's smoothing follows.
 constexpr double erodible_rate = 56.0, path_rate = 16.0, deposition_rate = 16.0, forest_rate = 16.0, raised_rate = 8.0;
+/// Besides, for each particle that exchanges mass with the bed: six numbers, and the weights of its sub-points on nodes.
+constexpr double exchange_rate = 48.0 + 136.0 * 9.0 / 8.0;
 constexpr double graphics_need = 350e6;  ///< besides, for pictures: software OpenGL, 290 to 420 MB
 
 /// A 3D grid has an entry for each of its tiles, and storage of those that are reached only.
@@ -106,6 +108,7 @@ MemoryNeed memory_need(const Scene& scene) {
     MemoryNeed need = memory_need(scene.wider ? 0.0 : nodes, particles, scene.output.vtk);
     if (scene.wider) need.nodes = memory_of_part(nodes);
     need.nodes += memory_of_fields(scene, nodes);
+    if (scene.erodible || scene.deposition || scene.forest) need.particles += exchange_rate * particles;
     if (scene.structure) need.nodes += structure_rate * nodes;
     if (scene.water) need.nodes += water_rate * nodes;
     const bool draws = std::any_of(scene.insitu.begin(), scene.insitu.end(),

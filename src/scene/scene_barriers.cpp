@@ -115,6 +115,9 @@ private:
             for (Index i = 0; i < near.nx; ++i)
                 if (stands[static_cast<std::size_t>(j * near.nx + i)])
                     lowest = std::fmin(lowest, scene_.bed.at(near.i0 + i, near.j0 + j));
+        if (std::isinf(lowest))  // between nodes
+            for (const Vec2& corner : polygon.rings.front())
+                lowest = std::fmin(lowest, bed_elevation(scene_.bed, corner.x(), corner.y()));
         return lowest;
     }
 

@@ -35,14 +35,15 @@ Raster on_nodes(const std::filesystem::path& path, const GisReader& reader, Scen
     std::vector<std::string> before = scene.log;  // what the first reading says the second says again
     const Raster pixels = pixels_on(path, reader, scene);
     refuse_negative(pixels, path.string());
-    const bool larger = pixels.geometry.size() > 1 && pixels.geometry.cell > (1.0 + kRoundOff) * grid.cell;
+    const bool none = pixels.geometry.size() == 1 && std::isnan(pixels.values.front());  // it lies elsewhere
+    const bool larger = !none && pixels.geometry.cell > (1.0 + kRoundOff) * grid.cell;
     scene.log = std::move(before);
     if (!larger || reader.place_of(path, grid.pixel_extent(), scene.bed.crs_wkt).needs_warp)
         return field_on(path, reader, scene);
     const double around = 2.0 * pixels.geometry.cell;  // neighbours of the outermost pixels
     const auto extent = grid.pixel_extent();
     scene.log.push_back(
-        fmt::format("{}: depths of {:.6g} m pixels interpolated to {:.6g} m cells, each pixel's volume kept",
+        fmt::format("{}: depths of {:.6g} m pixels interpolated to {:.6g} m cells, none beyond the pixels around",
                     path.filename().string(), pixels.geometry.cell, grid.cell));
     return on_closer_nodes(
         reader.read_raster(path, {extent[0] - around, extent[1] - around, extent[2] + around, extent[3] + around},

@@ -208,11 +208,16 @@ private:
         if (!given("surface") || !is_file("surface")) return {};
         const std::vector<std::string> before = log_;
         const std::optional<Raster> depth = surface_minus_model(release);
-        if (!depth)
-            log_ = before;
-        else
-            remark_on_gaps(*depth, claimed(release, depth->geometry), place("surface"), log_);
+        if (!depth) log_ = before;
         return depth;
+    }
+
+    /// To the round-off of origins that programs work out in different ways.
+    static bool same_pixels(const GridGeometry& a, const GridGeometry& b) {
+        constexpr double kShare = 1e-6;
+        return a.nx == b.nx && a.ny == b.ny && std::abs(a.x0 - b.x0) < kShare * b.cell &&
+               std::abs(a.y0 - b.y0) < kShare * b.cell &&
+               std::abs(a.cell - b.cell) * double(a.nx + a.ny) < kShare * b.cell;
     }
 
     std::optional<Raster> surface_minus_model(const Release& release) const {
@@ -232,8 +237,9 @@ private:
             const double within = kRoundOff * depth.geometry.cell;
             const auto [x0, y0, x1, y1] = depth.geometry.pixel_extent();
             const Raster model = part(dem, {x0 + within, y0 + within, x1 - within, y1 - within});
-            if (!(depth.geometry == model.geometry)) return {};
+            if (!same_pixels(depth.geometry, model.geometry)) return {};
             const NodeMarks wanted = claimed(release, depth.geometry);
+            remark_on_gaps(depth, wanted, place("surface"), log_);
             for (std::size_t k = 0; k < depth.values.size(); ++k) {
                 const bool known = std::isfinite(model.values[k]) || std::isnan(depth.values[k]);
                 if (!known && release.outline && wanted[k]) return {};

@@ -9,14 +9,12 @@ void DepthAveraged::detrain(double dt) {
     if (!(sums.taken < 0.0)) return;
     account(of_bed(sums));
     if (erosion_->any_gone()) sorter_.drop(flow_.columns, erosion_->gone(), flow_.active);
-    flow_.windows.forget();
     status_.bed = erosion_->status();
 }
 
 /// Points that have become bed are gone. The bed stops what they crept with.
 void DepthAveraged::settle() {
     const std::optional<ExchangeSums> sums = erosion_->settle(flow_, status_);
-    flow_.windows.forget();
     if (!sums) return;
     account(of_bed(*sums));
     sorter_.drop(flow_.columns, erosion_->gone(), flow_.active);

@@ -229,6 +229,7 @@ ExchangeSums Erosion::exchange(Flow& flow, double dt) {
     ExchangeSums all;
     if (!takes_ || !(dt > 0.0) || !choose(flow)) return all;
     make_room(flow);
+    flow.windows.start(flow.columns.count(), flow.active.count());  // for the deposit as well
     find_demand(flow, dt);
     scarce_ = find_shares(flow);
     if (scarce_) share_out(flow);
@@ -270,12 +271,11 @@ bool Erosion::choose(const Flow& flow) {
     return any;
 }
 
-void Erosion::make_room(Flow& flow) {
+void Erosion::make_room(const Flow& flow) {
     const std::size_t count = static_cast<std::size_t>(flow.columns.count());
     for (Array* column : {&wanted_, &missed_, &speed_, &braked_, &from_x_, &from_y_}) resize_sparingly(*column, count);
     const std::size_t tiles = static_cast<std::size_t>(flow.active.count());
     sums_.assign(tiles, {}), spread_to_.resize(tiles);
-    flow.windows.start(flow.columns.count(), flow.active.count());
 }
 
 /// THEORY (72): the demand of each point, and their sum on the nodes.

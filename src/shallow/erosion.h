@@ -118,7 +118,7 @@ private:
                          const std::vector<Index>& tiles);
     void serialize_deposition(Archive& archive, const Flow& flow);
     bool choose(const Flow& flow);
-    void make_room(Flow& flow);
+    void make_room(const Flow& flow);
     void find_demand(Flow& flow, double dt);
     bool find_shares(Flow& flow);
     void share_out(Flow& flow);

@@ -22,16 +22,16 @@ public:
     void start(Index points, Index tiles) {
         const std::size_t slots = static_cast<std::size_t>(points / 4 + tiles + 1);
         assign_sparingly(known_, slots, std::uint8_t{0});
-        if (windows_.size() < slots) windows_.resize(slots + slots / 8);
+        if (windows_.size() >= slots) return;
+        windows_ = {};  // nothing of them is wanted
+        windows_ = std::vector<WindowOfFour>(slots + slots / 8);
     }
     void forget() { known_.clear(); }
     bool any_known() const { return !known_.empty(); }
     /// Of the four points from p on, of the n-th tile with material. Known only where sub-points are near.
     WindowOfFour& at(Index p, Index n) { return windows_[slot(p, n)]; }
     /// Once started: nullptr where it is not known.
-    const WindowOfFour* find(Index p, Index n) const {
-        return known_[slot(p, n)] ? &windows_[slot(p, n)] : nullptr;
-    }
+    const WindowOfFour* find(Index p, Index n) const { return known_[slot(p, n)] ? &windows_[slot(p, n)] : nullptr; }
     void know(Index p, Index n, bool known) { known_[slot(p, n)] = known; }
 
 private:

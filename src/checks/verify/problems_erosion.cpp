@@ -247,14 +247,20 @@ std::vector<Problem> erosion_problems() {
                      run_constant};
     Problem growth{"slab_growth",
                    "a slab on 30 degrees grows by its way, kappa 0, 1/2 and 1 (Hungr 1995)",
-                   {10, 20, 40},
+                   {10, 20, 40, 80},
                    growing_slab_residuals,
                    run_growth};
     Problem voellmy{
-        "slab_voellmy_growth", "the same with Voellmy's drag", {10, 20, 40}, voellmy_slab_residuals, run_voellmy};
+        "slab_voellmy_growth", "the same with Voellmy's drag", {10, 20, 40, 80}, voellmy_slab_residuals, run_voellmy};
     for (Problem* slab : {&constant, &growth, &voellmy}) {
         slab->order_of = "speed_error";
-        slab->gates = {exact("speed_error"), exact("thickness_error"), exact("travel_error"), mass};
+        const Index finest = slab->grids.back();
+        slab->gates = {exact("speed_error"),
+                       exact("thickness_error"),
+                       exact("travel_error"),
+                       mass,
+                       {finest, "speed_error", 1e-6, "goal"},
+                       {finest, "thickness_error", 1e-6, "goal"}};
     }
     Problem trench{
         "trench", "what a thin block takes of its bed on 300 m, where", {5, 10, 20, 40}, trench_residuals, run_trench};
