@@ -65,16 +65,30 @@ Asked asked_when_warm(Run& run, int steps, Tiles&& tiles) {
     return asked;
 }
 
+/// Of a run that has made some steps.
+void check_warm(DepthAveraged& simulation) {
+    const auto [most, counted] =
+        asked_when_warm(simulation, 40, [&]() -> const ActiveTiles& { return simulation.flow().active; });
+    CHECK(counted >= 20);
+    CHECK(most == 0);
+}
+
+/// By Voellmy's law. Its points do not split: arrays grow with their number.
+Scene flow_on_slope(double density) {
+    Scene scene = verify::scene_on(120, 60, 2.0, [](double x, double) { return -0.5 * x; });
+    scene.density = density;
+    scene.bed_law = bed::Voellmy{0.3, 1000.0};
+    scene.scheme.split = false;
+    verify::fill(scene, [](double x, double y) { return x > 20 && x < 80 && y > 20 && y < 90 ? 2.0 : 0.0; }, {2});
+    return scene;
+}
+
 }  // namespace
 
 TEST_CASE("Steps of a warm run allocate nothing", "[speed]") {
-    Scene scene = verify::scene_on(120, 60, 2.0, [](double x, double) { return -0.5 * x; });
-    scene.density = 1800.0;
-    scene.bed_law = bed::Voellmy{0.3, 1000.0};
+    Scene scene = flow_on_slope(1800.0);
     scene.rheology = rheology::Bingham{100.0, 200.0};
     scene.scheme.precision = GENERATE(Precision::full, Precision::single);
-    scene.scheme.split = false;  // arrays grow with the number of points, by an eighth at a time
-    verify::fill(scene, [](double x, double y) { return x > 20 && x < 80 && y > 20 && y < 90 ? 2.0 : 0.0; }, {2});
     if (GENERATE(false, true)) {  // two releases that are waited for
         scene.late = {{"hit", {}, {}, scene.particles.count()}, {"timed", 1e8, {}, scene.particles.count() + 1}};
         for (LateRelease& late : scene.late) late.seeds.append(scene.particles, 0, 1);
@@ -82,38 +96,24 @@ TEST_CASE("Steps of a warm run allocate nothing", "[speed]") {
     }
     DepthAveraged simulation(scene);
     for (int step = 0; step < 30; ++step) simulation.advance(1e9);
-    const auto [most, counted] =
-        asked_when_warm(simulation, 40, [&]() -> const ActiveTiles& { return simulation.flow().active; });
-    CHECK(counted >= 20);
-    CHECK(most == 0);
+    check_warm(simulation);
     const long before = allocations;
     const std::vector<double> proof(1000);
     CHECK(allocations == before + 1);  // and that would be seen
 }
 
 TEST_CASE("Warm steps among trees allocate nothing", "[speed][forest]") {
-    Scene scene = verify::scene_on(120, 60, 2.0, [](double x, double) { return -0.5 * x; });
-    scene.density = 300.0;
-    scene.bed_law = bed::Voellmy{0.3, 1000.0};
-    scene.scheme.split = false;  // arrays grow with the number of points
-    verify::fill(scene, [](double x, double y) { return x > 20 && x < 80 && y > 20 && y < 90 ? 2.0 : 0.0; }, {2});
+    Scene scene = flow_on_slope(300.0);
     scene.forest = Forest{Raster::filled(scene.bed.geometry, 100.0), {}};
     DepthAveraged simulation(scene);
     for (int step = 0; step < 30; ++step) simulation.advance(1e9);
     const double before = simulation.status().bed.deposited;
-    const auto [most, counted] =
-        asked_when_warm(simulation, 40, [&]() -> const ActiveTiles& { return simulation.flow().active; });
-    CHECK(counted >= 20);
-    CHECK(most == 0);
+    check_warm(simulation);
     CHECK(simulation.status().bed.deposited > before);
 }
 
 TEST_CASE("Warm steps over a loose bed allocate nothing", "[speed][erosion]") {
-    Scene scene = verify::scene_on(120, 60, 2.0, [](double x, double) { return -0.5 * x; });
-    scene.density = 1800.0;
-    scene.bed_law = bed::Voellmy{0.3, 1000.0};
-    scene.scheme.split = false;  // arrays grow with the number of points
-    verify::fill(scene, [](double x, double y) { return x > 20 && x < 80 && y > 20 && y < 90 ? 2.0 : 0.0; }, {2});
+    Scene scene = flow_on_slope(1800.0);
     ErodibleBed bed;
     bed.depth = Raster::filled(scene.bed.geometry, 1.0);
     bed.density = scene.density;
@@ -122,10 +122,7 @@ TEST_CASE("Warm steps over a loose bed allocate nothing", "[speed][erosion]") {
     DepthAveraged simulation(scene);
     for (int step = 0; step < 30; ++step) simulation.advance(1e9);
     const double before = simulation.status().bed.eroded;
-    const auto [most, counted] =
-        asked_when_warm(simulation, 40, [&]() -> const ActiveTiles& { return simulation.flow().active; });
-    CHECK(counted >= 20);
-    CHECK(most == 0);
+    check_warm(simulation);
     CHECK(simulation.status().bed.eroded > before);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/discharge.h"
 
@@ -209,8 +210,9 @@ std::vector<std::vector<Feed::Entry>> Feed::entries(double end) const {
         double volume = 0.0;
         for (const InflowRow& row : source.rows)
             if (row.complete <= end) volume += row.volume;
-        std::vector<Entry>& entries = all.emplace_back();
+        std::vector<Entry> entries;
         for (const Station& station : source.stations) entries.push_back({station.at, station.share * volume});
+        all.push_back(std::move(entries));
     }
     return all;
 }
