@@ -207,7 +207,7 @@ private:
     std::optional<Raster> depth_below_surface(const Release& release) const {
         if (!given("surface") || !is_file("surface")) return {};
         const std::vector<std::string> before = log_;
-        const std::optional<Raster> depth = surface_minus_model(release);
+        std::optional<Raster> depth = surface_minus_model(release);
         if (!depth) log_ = before;
         return depth;
     }
