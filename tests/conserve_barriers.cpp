@@ -590,21 +590,25 @@ TEST_CASE("Where points are no more, a barrier's table has no force, and none is
     CHECK(summaries.at(0).blur == 0.0);
 }
 
+/// A blow of 100 N up to 0.01 s, then a steady 2 N up to 3 s, in steps of 0.01 s. The material is there in step `arrives`.
+void blow(Barriers& table, int arrives) {
+    Pushed probe;
+    Status now;
+    table.step(now, probe);
+    for (int step = 1; step <= 300; ++step) {
+        now.time = 0.01 * step;
+        probe.state.barriers[0].faces[0].impulse.x() += 0.01 * (step == 1 ? 100.0 : 2.0);
+        probe.state.barriers[0].touched = step >= arrives;
+        table.step(now, probe);
+    }
+}
+
 TEST_CASE("A barrier's mean force does not depend on a short blow", "[barrier]") {
     const FreshFolder scratch;
     const auto& folder = scratch.path();
     std::vector<BarrierSummary> summaries;
     Barriers table(folder, {{"dam", {}}}, summaries);
-    Pushed probe;
-    Status now;
-    table.step(now, probe);
-    // A blow of 100 N for 0.01 s, then a steady 2 N.
-    for (int step = 1; step <= 300; ++step) {
-        now.time = 0.01 * step;
-        probe.state.barriers[0].faces[0].impulse.x() += 0.01 * (step == 1 ? 100.0 : 2.0);
-        probe.state.barriers[0].touched = step > 1;
-        table.step(now, probe);
-    }
+    blow(table, 2);
     table.observe({});
     const BarrierSummary& dam = summaries.at(0);
     CHECK(dam.raw_peak_force == Approx(100.0));
@@ -622,16 +626,7 @@ TEST_CASE("What presses on a barrier before its first contact is counted, and da
     const FreshFolder scratch;
     std::vector<BarrierSummary> summaries;
     Barriers table(scratch.path(), {{"dam", {0.01, 0.5}}}, summaries);
-    Pushed probe;
-    Status now;
-    table.step(now, probe);
-    // A blow of 100 N up to 0.01 s, then a steady 2 N. The material is there at 0.05 s.
-    for (int step = 1; step <= 300; ++step) {
-        now.time = 0.01 * step;
-        probe.state.barriers[0].faces[0].impulse.x() += 0.01 * (step == 1 ? 100.0 : 2.0);
-        probe.state.barriers[0].touched = step >= 5;
-        table.step(now, probe);
-    }
+    blow(table, 5);
     const BarrierSummary& dam = summaries.at(0);
     CHECK(dam.first_contact == Approx(0.05));
     CHECK(dam.means.at(0).largest == Approx(100.0));

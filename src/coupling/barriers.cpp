@@ -354,8 +354,7 @@ std::vector<std::string> ColumnWatch::remarks() const {
     for (const Entering& entering : enter_)
         all.push_back(
             fmt::format("inflow {}: found {:.4g} m3 of it that enter on top of barriers by time.end; expected none, "
-                        "since it falls from "
-                        "there; move it off their outlines, or cut them out of its area",
+                        "since it falls from there; move it off their outlines, or cut them out of its area",
                         entering.inflow, entering.volume));
     return all;
 }

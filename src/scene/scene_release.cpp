@@ -11,6 +11,7 @@
 #include "scene/nodes_of_place.h"
 #include "scene/scene_parts.h"
 #include "terrain/bed_points.h"
+#include "terrain/part_of.h"
 
 namespace frana {
 namespace {
@@ -212,14 +213,6 @@ private:
         return depth;
     }
 
-    /// To the round-off of origins that programs work out in different ways.
-    static bool same_pixels(const GridGeometry& a, const GridGeometry& b) {
-        constexpr double kShare = 1e-6;
-        return a.nx == b.nx && a.ny == b.ny && std::abs(a.x0 - b.x0) < kShare * b.cell &&
-               std::abs(a.y0 - b.y0) < kShare * b.cell &&
-               std::abs(a.cell - b.cell) * double(a.nx + a.ny) < kShare * b.cell;
-    }
-
     std::optional<Raster> surface_minus_model(const Release& release) const {
         constexpr double kRoundOff = 1e-9;
         const std::filesystem::path file = case_.path(key("surface")), dem = case_.path("terrain.dem");
@@ -237,7 +230,8 @@ private:
             const double within = kRoundOff * depth.geometry.cell;
             const auto [x0, y0, x1, y1] = depth.geometry.pixel_extent();
             const Raster model = part(dem, {x0 + within, y0 + within, x1 - within, y1 - within});
-            if (!same_pixels(depth.geometry, model.geometry)) return {};
+            const std::optional<NodeBox> same = box_of(depth.geometry, model.geometry);
+            if (!same || !(*same == NodeBox::all(model.geometry))) return {};
             const NodeMarks wanted = claimed(release, depth.geometry);
             remark_on_gaps(depth, wanted, place("surface"), log_);
             for (std::size_t k = 0; k < depth.values.size(); ++k) {
