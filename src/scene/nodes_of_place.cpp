@@ -65,6 +65,24 @@ Raster field_on(const std::filesystem::path& file, const GisReader& reader, Scen
     return reader.read_onto(file, scene.bed.geometry, scene.bed.crs_wkt, scene.log);
 }
 
+Raster field_within_pixels(const std::filesystem::path& file, const Raster& pixels, const GisReader& reader,
+                           Scene& scene) {
+    constexpr double kRoundOff = 1e-9;
+    const GridGeometry& grid = scene.bed.geometry;
+    const bool none = pixels.geometry.size() == 1 && std::isnan(pixels.values.front());  // it lies elsewhere
+    const bool larger = !none && pixels.geometry.cell > (1.0 + kRoundOff) * grid.cell;
+    const auto extent = grid.pixel_extent();
+    if (!larger || reader.place_of(file, extent, scene.bed.crs_wkt).needs_warp) return field_on(file, reader, scene);
+    const double around = 2.0 * pixels.geometry.cell;  // neighbours of the outermost pixels
+    scene.log.push_back(
+        fmt::format("{}: values of {:.6g} m pixels interpolated to {:.6g} m cells, none beyond the pixels around",
+                    file.filename().string(), pixels.geometry.cell, grid.cell));
+    return on_closer_nodes(
+        reader.read_raster(file, {extent[0] - around, extent[1] - around, extent[2] + around, extent[3] + around},
+                           scene.bed.crs_wkt, scene.log),
+        grid);
+}
+
 bool may_begin_beyond(const Polygons& polygons, const Scene& scene) {
     if (!scene.wider) return false;
     std::vector<Vec2> corners;

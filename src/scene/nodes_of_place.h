@@ -23,6 +23,11 @@ Raster pixels_on(const std::filesystem::path& file, const GisReader& reader, Sce
 /// The same on the nodes of the terrain.
 Raster field_on(const std::filesystem::path& file, const GisReader& reader, Scene& scene);
 
+/// The same, of values that are 0 or more, given its pixels. On pixels larger than the cells it ends where they do, and
+/// no value leaves the range of the pixels around. Interpolation across a step would carry a third of it on.
+Raster field_within_pixels(const std::filesystem::path& file, const Raster& pixels, const GisReader& reader,
+                           Scene& scene);
+
 /// Whether polygons that hold no node of the scene's part of the terrain may hold some beyond it. Never where the scene
 /// has all of the terrain.
 bool may_begin_beyond(const Polygons& polygons, const Scene& scene);

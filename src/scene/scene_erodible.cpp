@@ -27,28 +27,13 @@ void refuse_negative(const Raster& pixels, const std::string& file) {
                     file, bad, pixels.values[first], place_text(pixels.geometry, first)));
 }
 
-/// Of a raster of depths. On pixels larger than the cells loose ground ends where it does there, and no depth leaves
-/// the range of the pixels around. Interpolation across a step would carry a third of it on into rock.
+/// Of a raster of depths.
 Raster on_nodes(const std::filesystem::path& path, const GisReader& reader, Scene& scene) {
-    constexpr double kRoundOff = 1e-9;
-    const GridGeometry& grid = scene.bed.geometry;
     std::vector<std::string> before = scene.log;  // what the first reading says the second says again
     const Raster pixels = pixels_on(path, reader, scene);
     refuse_negative(pixels, path.string());
-    const bool none = pixels.geometry.size() == 1 && std::isnan(pixels.values.front());  // it lies elsewhere
-    const bool larger = !none && pixels.geometry.cell > (1.0 + kRoundOff) * grid.cell;
     scene.log = std::move(before);
-    if (!larger || reader.place_of(path, grid.pixel_extent(), scene.bed.crs_wkt).needs_warp)
-        return field_on(path, reader, scene);
-    const double around = 2.0 * pixels.geometry.cell;  // neighbours of the outermost pixels
-    const auto extent = grid.pixel_extent();
-    scene.log.push_back(
-        fmt::format("{}: depths of {:.6g} m pixels interpolated to {:.6g} m cells, none beyond the pixels around",
-                    path.filename().string(), pixels.geometry.cell, grid.cell));
-    return on_closer_nodes(
-        reader.read_raster(path, {extent[0] - around, extent[1] - around, extent[2] + around, extent[3] + around},
-                           scene.bed.crs_wkt, scene.log),
-        grid);
+    return field_within_pixels(path, pixels, reader, scene);
 }
 
 /// On the nodes of the terrain; rock is 0.

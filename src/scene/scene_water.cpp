@@ -49,7 +49,7 @@ Raster rate_on_nodes(const CaseFile& file, const GisReader& reader, const std::s
     require(
         pixels, path.string(), "pixels", [](double rate) { return rate >= 0.0 && rate < INFINITY; },
         "expected rates in m/s, 0 or more, in all of them; fill what is missing (0 where there is none) or correct it");
-    Raster nodes = reader.read_onto(path, grid, scene.bed.crs_wkt, scene.log);
+    Raster nodes = field_within_pixels(path, pixels, reader, scene);
     require(
         nodes, path.string(), "nodes of the terrain", [](double rate) { return std::isfinite(rate); },
         "expected a raster that covers all of the terrain; extend it (0 where there is none), or give a terrain.window "
