@@ -55,9 +55,9 @@ struct GroundOf {
 }
 
 /// The same before it acted, and after it acted on `bound` of the node's mass alone.
-[[gnu::always_inline]] inline FlatOf<double> brought(const StructuredBody& body, Index k, double mass) {
-    const Deposit& d = body.nodes[k];
-    return 1.0 / mass * FlatOf<double>{d.px, d.py};
+template <class Real>
+[[gnu::always_inline]] inline FlatOf<Real> brought(const StructuredBody& body, Index k, Real mass) {
+    return stressed(body, k, mass, 0.0);
 }
 [[gnu::always_inline]] inline FlatOf<double> stressed_part(const StructuredBody& body, Index k, double mass,
                                                            double bound, double dt) {

@@ -117,17 +117,19 @@ template <class Real>
 }
 
 /// What grains do at a node whose weight acts already. Over a bend that is by the velocity in the middle of the step.
+/// There the stress of the structure does not count: next to a node's last bit of mass it gives it any speed.
 template <class Real, class Law>
 [[gnu::always_inline]] inline GrainForceOf<Real> force_of_grains(const NodeStep<Law>& step, Index k,
                                                                  const GroundOf<Real>& ground,
                                                                  const DrivenOf<Real>& node, double bears) {
-    const GrainForceOf<Real> at_start = grain_force(step.body, k, ground, bears, node.before);
-    if (!step.body.curved) return at_start;
+    if (!step.body.curved) return grain_force(step.body, k, ground, bears, node.before);
     const double dt = step.times.velocity_dt;
+    const FlatOf<Real> brought = frana::brought(step.body, k, read<Real>(&step.body.node_mass[k]));
+    const GrainForceOf<Real> at_start = grain_force(step.body, k, ground, bears, brought);
     const FlatOf<Real> all = (Real{} + 1.0 / dt) * (node.driven - node.before) + at_start.acceleration;
     return grain_force(
         step.body, k, ground, bears,
-        midway(step.template law_at<Real>(k), ground, node.across * at_start.weight(), node.before, all, dt));
+        midway(step.template law_at<Real>(k), ground, node.across * at_start.weight(), brought, all, dt));
 }
 
 /// What grains add to a velocity that is `driven` without them.
