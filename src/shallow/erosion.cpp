@@ -34,6 +34,9 @@ std::vector<double> half_filter(Index passes) {
     return w;
 }
 
+/// Friction that nothing depends on: of laws without stress, when the bed brings no momentum.
+struct Unfelt {};
+
 /// The bed law under four points: that of the run, or those of the nodes nearest to them.
 template <class Friction>
 decltype(auto) law_under(const Friction& friction, const Flow& flow, const Double4& x, const Double4& y) {
@@ -61,12 +64,17 @@ Double4 decelerations(const Law& law, const BedStateOf<Double4>& bed, Double4 sp
     return (speed - speeds_after(law, bed, speed, speed, kShort)) * (1.0 / kShort);
 }
 
-/// exp(x) - 1 of four x >= 0. A step's growth is small: its Taylor series is right to round-off, the next term is 1e-17.
-Double4 growth_of_four(Double4 x) {
-    constexpr double kSeries = 1.0 / 16;
-    Double4 sum = x * (1.0 / 9);
-    for (int n = 8; n > 1; --n) sum = x * (1.0 / n) * (1.0 + sum);
-    sum = x * (1.0 + sum);
+/// exp(x) - 1 of four x >= 0. A step's growth is small: Taylor series that are right to round-off, the next term is 1e-18
+/// of the first.
+[[gnu::always_inline]] inline Double4 growth_of_four(Double4 x) {
+    constexpr double kShortSeries = 1e-3, kSeries = 1.0 / 16;
+    const auto series = [&](int terms) {
+        Double4 sum = x * (1.0 / terms);
+        for (int n = terms - 1; n > 1; --n) sum = x * (1.0 / n) * (1.0 + sum);
+        return x * (1.0 + sum);
+    };
+    if (!any(x > kShortSeries)) return series(5);
+    Double4 sum = series(9);
     if (any(x > kSeries))
         for (int lane = 0; lane < 4; ++lane)
             if (x[lane] > kSeries) sum[lane] = std::expm1(x[lane]);
@@ -74,13 +82,16 @@ Double4 growth_of_four(Double4 x) {
 }
 
 /// Shares of their masses that four points demand in a step. `middle`: to second order, for the middle of the step.
+/// `per_thickness`: of one over the flow's thickness [1/m].
 template <class Law>
-Double4 wanted_shares(const Law& law, const erosion::StateOf<Double4>& s, bool middle) {
-    Double4 rate = law.rate(s);
-    if constexpr (!Law::kProportional) rate = min(rate, s.speed);  // no faster than the flow slides over the bed
-    const Double4 share = rate * s.dt * s.bed_density / (s.density * s.thickness);
-    if constexpr (!Law::kProportional) return share;
-    return middle ? share + 0.5 * share * share : growth_of_four(share);
+[[gnu::always_inline]] inline Double4 wanted_shares(const Law& law, const erosion::StateOf<Double4>& s,
+                                                    Double4 per_thickness, bool middle) {
+    if constexpr (Law::kProportional) {
+        const Double4 share = s.dt * law.share_rate(s);
+        return middle ? share + 0.5 * share * share : growth_of_four(share);
+    }
+    // No faster than the flow slides over the bed.
+    return min(law.rate(s), s.speed) * (s.dt * s.bed_density / s.density) * per_thickness;
 }
 
 /// Sums of four kinds at once, without loss (Knuth's sum of two).
@@ -290,10 +301,13 @@ void Erosion::find_demand(Flow& flow, double dt) {
                     if (deposits_) return demand_of_tile<Law, Under, Real, true>(flow, n, dt, law, friction);
                 demand_of_tile<Law, Under, Real, false>(flow, n, dt, law, friction);
             };
-            if (flow.laws)
-                std::visit([&](const auto& law) { demand(law, LawOfEachNode{}); }, law_);
-            else
-                std::visit(demand, law_, friction_);
+            const auto demand_of = [&](const auto& law) {
+                if constexpr (!std::decay_t<decltype(law)>::kSeesStress)
+                    if (momentum_ == 0.0) return demand(law, Unfelt{});
+                if (flow.laws) return demand(law, LawOfEachNode{});
+                std::visit([&](const auto& friction) { demand(law, friction); }, friction_);
+            };
+            std::visit(demand_of, law_);
             spread<Real>(flow, n, wanted_, demand_);
         });
     });
@@ -336,8 +350,9 @@ Double4 strengths(const Law& law, const BedStateOf<Double4>& bed, Double4 speed,
                                                         Double4 dy) {
     Columns& c = flow.columns;
     const Double4 x0 = load(&c.x[p], lanes), y0 = load(&c.y[p], lanes), none = {};
+    const double per_cell = 1.0 / flow.cell;
     store(&from_x_[p], x0, lanes), store(&from_y_[p], y0, lanes);
-    const Double4 x = x0 - dx / flow.cell, y = y0 - dy / flow.cell;
+    const Double4 x = x0 - dx * per_cell, y = y0 - dy * per_cell;
     const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
     chosen &= (x >= 0.0) & (x <= x_max) & (y >= 0.0) & (y <= y_max);
     if (flow.bed.has_exits)
@@ -353,7 +368,7 @@ template <class Law, class Friction, class Real, bool kFresh>
 void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, const Friction& friction) {
     Columns& c = flow.columns;
     const Carried<Real>& held = c.carried<Real>();
-    const bool feels = Law::kSeesStress || momentum_ > 0.0;
+    constexpr bool kFeels = !std::is_same_v<Friction, Unfelt>;
     const double slowest = std::max(kSlowest, slowest_);
     Double4 farthest = {};
     for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
@@ -368,26 +383,29 @@ void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, con
         const Double4 u = select(moves, on_map, one), ux = select(moves, vx, one), uy = select(moves, vy, none);
         const Double4 deep = select(moves, depth, one);
         // A curved bed changes the weight alone, which only friction and laws of it use.
-        const GroundOfFour ground(flow, curved_ && feels, means, ux, uy, deep);
+        const GroundOfFour ground(flow, kFeels && curved_, means, ux, uy, deep);
         erosion::StateOf<Double4> state;
         state.density = flow.density, state.bed_density = density_, state.dt = dt;
         state.thickness = ground.below.thickness;
         state.normal_gravity = ground.below.kappa * ground.below.normal_gravity;
         see_layer<Law, kFresh>(means, ground.below.cosine, state);
         if constexpr (Law::kSeesLeft) state.edge = sqrt(select(moves, mass / (flow.density * deep), one));
+        const Double4 per_thickness = one / state.thickness, braked_share = dt / u;
         Double4 at_middle = one, gain = none, brake = none;  // the speed in the middle, over that at hand
         for (const bool middle : {true, false}) {
-            if (!middle) at_middle = sqrt(speeds_left(gain, brake * dt / u));
-            if (feels) brake = decelerations(below, ground.below, at_middle * u);
+            if (!middle) at_middle = sqrt(speeds_left(gain, brake * braked_share));
             state.speed = at_middle * ground.speed;
-            state.stress = flow.density * state.thickness * ground.below.kappa * brake;
-            if constexpr (Law::kSeesStress && kFresh)
-                if (any(state.lies > none)) state.bears = strengths(below, ground.below, at_middle * u, state);
-            gain = select(moves, wanted_shares(law, state, middle), none);
+            if constexpr (kFeels) {
+                brake = decelerations(below, ground.below, at_middle * u);
+                state.stress = flow.density * state.thickness * ground.below.kappa * brake;
+                if constexpr (Law::kSeesStress && kFresh)
+                    if (any(state.lies > none)) state.bears = strengths(below, ground.below, at_middle * u, state);
+            }
+            gain = select(moves, wanted_shares(law, state, per_thickness, middle), none);
         }
         store(&wanted_[p], gain * mass, lanes);
         store(&speed_[p], ground.speed, lanes);
-        if (momentum_ > 0.0) store(&braked_[p], dt * brake / u, lanes);
+        if (momentum_ > 0.0) store(&braked_[p], brake * braked_share, lanes);
         const Double4 back = (1.0 - at_middle) * dt;
         farthest = max(farthest, set_back(flow, p, lanes, gain > none, back * vx, back * vy));
     });
@@ -657,7 +675,7 @@ void Erosion::lower_tile(Flow& flow, Index tile) {
         if (!any(taken > none)) return;
         const Double4 of_fresh = min(taken, lies), old = taken - of_fresh;  // of a node the deposit goes first
         const Double4 sinks = evolves_ ? old * per_area_ + of_fresh * per_area_of_flow_ : none,
-                      rises = taken / (flow.density * flow.area);
+                      rises = taken * per_area_of_flow_;
         const Double4 z = load(&flow.bed.z[k]), h = load(&flow.nodes.depth[k]);
         energy += shares_of_four(flow, i, j) * flow.gravity *
                   (taken * (z - sinks + 0.5 * rises) + flow.density * flow.area * h * (rises - sinks));

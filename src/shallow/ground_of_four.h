@@ -44,7 +44,7 @@ private:
     Double4 weights_[4][3];  ///< of a point, of a row: three nodes, and zero
 };
 
-/// The bed law's input below four points, and their speed along it; on gentle ground that of the map.
+/// The bed law's input below four points that have a speed, and their speed along it; on gentle ground that of the map.
 struct GroundOfFour {
     BedStateOf<Double4> below;
     Double4 speed;
@@ -62,9 +62,14 @@ struct GroundOfFour {
             bx = sx, by = sy;
         }
         const Double4 on_map2 = vx * vx + vy * vy, rise = vx * bx + vy * by;
-        const Double4 kappa = sqrt(one + rise * rise / on_map2), cosine = one / sqrt(one + bx * bx + by * by);
-        speed = kappa * sqrt(on_map2);
-        below = {gravity * cosine / kappa, max(depth * cosine, all(1e-9)), kappa, cosine, flow.gravity, flow.density};
+        const Double4 cosine = one / sqrt(one + bx * bx + by * by), on_map = sqrt(on_map2);
+        speed = sqrt(on_map2 + rise * rise);
+        below = {gravity * cosine * (on_map / speed),
+                 max(depth * cosine, all(1e-9)),
+                 speed / on_map,
+                 cosine,
+                 flow.gravity,
+                 flow.density};
     }
 };
 

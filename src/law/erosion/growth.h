@@ -25,7 +25,12 @@ struct Growth {
     /// src/shallow/THEORY.md (67)
     template <class Real>
     Real rate(const StateOf<Real>& s) const {
-        return growth * s.density / s.bed_density * s.thickness * s.speed;
+        return s.density / s.bed_density * s.thickness * share_rate(s);
+    }
+    /// Share of its mass that the flow gains [1/s].
+    template <class Real>
+    Real share_rate(const StateOf<Real>& s) const {
+        return growth * s.speed;
     }
 };
 
