@@ -410,6 +410,51 @@ TEST_CASE("A barrier's box stops a structured block, which leaves it the momentu
     CHECK(run.breakage().pushed == std::array<double, 2>{-got.x(), -got.y()});
 }
 
+/// A wall across the way, between x = `from` and `to`.
+Barrier wall_across(double from, double to) {
+    Barrier wall;
+    wall.name = "wall";
+    wall.height = 50.0;
+    wall.outline.parts = {{{{{from, -5.0}, {to, -5.0}, {to, 20.0}, {from, 20.0}}}}};
+    return wall;
+}
+
+// One row of nodes was stopped in a wall of 0.8 cells between them, and none of what came; two rows let an eighth through.
+TEST_CASE("No wall is so thin that structured columns go through it", "[structured]") {
+    const double width = GENERATE(0.05, 0.4, 0.6, 1.1, 1.4), from = GENERATE(12.05, 12.3, 12.5);
+    CAPTURE(width, from);
+    for (const bool grains : {true, false}) {
+        Scene scene = sliding();
+        if (grains) scene.structure->share = 0.0, scene.structure->hydrostatic = true;
+        scene.bed_law = bed::Coulomb{0.1};
+        scene.end = 4.0, scene.sides = Sides::wall;  // nothing leaves
+        scene.barriers = {wall_across(from, from + width)};
+        StructuredRun run(scene);
+        go_to(run, scene.end);
+        const Frame frame = run.frame();
+        double farthest = 0.0;
+        for (Index p = 0; p < frame.particles[0].count; ++p)
+            farthest = std::max(farthest, frame.particle("position")->data[3 * p]);
+        CHECK(farthest < from + 0.5 * width);  // its middle
+        CHECK(run.status().mass_left == 0.0);
+        CHECK(run.flow().status().impulse.obstacles.x() < -0.2 * run.status().mass);
+    }
+}
+
+TEST_CASE("A barrier below the ground stops no structured columns", "[structured]") {
+    Scene scene = sliding();
+    StructuredRun free(scene);
+    go_to(free, scene.end);
+    Barrier buried = wall_across(12.0, 14.0);
+    buried.top = 0.0;  // of ground that is 1 to 0.33 m high
+    scene.barriers = {buried};
+    StructuredRun run(scene);
+    go_to(run, scene.end);
+    CHECK(run.flow().status().impulse.obstacles == Vec2(0, 0));
+    CHECK(run.status().momentum == free.status().momentum);
+    CHECK(run.remarks() == free.remarks());
+}
+
 TEST_CASE("A barrier that structured columns stand higher than is named, since its box holds all back",
           "[structured]") {
     Scene scene = sliding();

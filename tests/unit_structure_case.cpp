@@ -193,3 +193,27 @@ TEST_CASE("What does not fit a structure is refused in one sentence", "[structur
     CHECK(has(problem_of_structure("[[insitu]]\nname = \"a\"\nkind = \"figure\"\nfield = \"damage\"\n"),
               "in a case without structure"));
 }
+
+TEST_CASE("A barrier's box that is widened, or that a release lies in, is told", "[structured][barriers]") {
+    const auto said = [&](const std::string& outline, double height) {
+        std::string all;
+        FakeGis files = gis();
+        files.polygons["thick.geojson"] = rectangle(1030, 2040, 1045, 2090);
+        files.polygons["within.geojson"] = files.polygons["release.geojson"];
+        const Scene scene = build_scene(
+            CaseFile::parse(
+                "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\n"
+                "end = 20\n" +
+                    structure + "[[barrier]]\noutline = \"" + outline + "\"\nheight = " + std::to_string(height) + "\n",
+                "slide/case.toml"),
+            files);
+        for (const std::string& remark : scene.log) all += remark + "\n";
+        return all;
+    };
+    const std::string thin = said("wall.geojson", 8.0);
+    CHECK(has(thin, "barrier.0.outline: found 5 m, less than 3 cells of 5 m: structured columns meet a box 15 m wide"));
+    CHECK_FALSE(has(thin, "stands on the cells that it cuts"));
+    CHECK_FALSE(has(said("thick.geojson", 8.0), "structured columns meet a box"));
+    CHECK(has(said("within.geojson", 8.0), "m3 of releases within it"));
+    CHECK_FALSE(has(thin, "of releases within it"));
+}

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/barrier_box.h"
 #include "terrain/bed_points.h"
 
 namespace frana {
@@ -260,7 +261,8 @@ void StructuredRun::remark_on_low_barriers(std::vector<std::string>& remarks) co
     const GridGeometry& g = bed_.geometry;
     for (const Barrier& barrier : barriers_) {
         double over = 0.0;
-        const Obstacle box = box_of(barrier);
+        if (is_buried(barrier, bed_)) continue;
+        const BarrierBox box = box_around(barrier, g.cell);
         for (Index j = 0; j < g.ny; ++j)
             for (Index i = 0; i < g.nx; ++i) {
                 const Vec2 place(g.x(i), g.y(j)), nearest = place.cwiseMax(box.low).cwiseMin(box.high);

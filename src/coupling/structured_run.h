@@ -19,8 +19,8 @@ StructuredScene structured_scene(const Scene& scene);
 /// The same with its water, or the water alone. Holds on to `scene` until a flow is made of it.
 TwoPhaseScene two_phase_scene(const Scene& scene);
 
-/// The box of a barrier's outline, which the case's reader has found to be one.
-Obstacle box_of(const Barrier& barrier);
+/// The box of a barrier's outline, which the case's reader has found to be one. Nothing for a barrier below the ground.
+std::optional<Obstacle> obstacle_of(const Barrier& barrier, const Raster& bed);
 
 class StructuredRun final : public Simulation {
 public:

@@ -8,6 +8,7 @@
 #include "coupling/structured_run.h"
 #include "coupling/water_sources.h"
 #include "mpm/stencil.h"
+#include "scene/barrier_box.h"
 #include "terrain/bed_points.h"
 #include "terrain/places.h"
 
@@ -98,13 +99,10 @@ void add_walls(const GridGeometry& g, std::vector<Obstacle>& obstacles) {
 
 }  // namespace
 
-Obstacle box_of(const Barrier& barrier) {
-    Obstacle box;
-    const std::vector<Vec2>& ring = barrier.outline.parts.front().rings.front();
-    box.low = box.high = ring.front();
-    for (const Vec2& corner : ring) box.low = box.low.cwiseMin(corner), box.high = box.high.cwiseMax(corner);
-    box.friction = barrier.stuck ? Obstacle::kFar : barrier.friction;
-    return box;
+std::optional<Obstacle> obstacle_of(const Barrier& barrier, const Raster& bed) {
+    if (is_buried(barrier, bed)) return {};
+    const BarrierBox box = box_around(barrier, bed.geometry.cell);
+    return Obstacle{box.low, box.high, barrier.stuck ? Obstacle::kFar : barrier.friction};
 }
 
 namespace {
@@ -159,7 +157,8 @@ StructuredScene structured_scene(const Scene& scene) {
     if (!of.unrolled) s.bed = bed_under(scene), s.curved = scene.curvature != Curvature::none;
     s.cfl = of.cfl;
     if (scene.sides == Sides::wall) add_walls(s.grid, s.obstacles);
-    for (const Barrier& barrier : scene.barriers) s.obstacles.push_back(box_of(barrier));
+    for (const Barrier& barrier : scene.barriers)
+        if (const auto box = obstacle_of(barrier, scene.bed)) s.obstacles.push_back(*box);
     if (!scene.structure) return s;  // all that is released is water
     const Seeds& seeds = scene.particles;
     s.confined = of.confined;

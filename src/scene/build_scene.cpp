@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/free_memory.h"
 #include "particles/generate.h"
+#include "scene/barrier_box.h"
 #include "scene/ground_fields.h"
 #include "scene/memory_need.h"
 #include "scene/problems.h"
@@ -56,6 +57,7 @@ public:
         require_room_for_all();
         problems_.throw_if_any();
         remark_on_releases(case_, built_.releases, scene_);
+        remark_on_releases_in_boxes(scene_);
         remark_on_fields(case_, scene_);
         cut_releases();
         return std::move(built_);

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "scene/barrier_box.h"
 #include "scene/barriers_of_case.h"
 #include "scene/joined_barriers.h"
 #include "scene/scene_parts.h"
@@ -90,8 +91,10 @@ public:
                           "expected one of both: what is stuck does not slide", "remove one of them");
         remark_buried(barrier);
         barrier.windows = windows();
-        remark_thin(barrier.outline);
-        remark_thin_wall(barrier);
+        if (case_.word("material.structure.law") == "none") {  // structured columns meet boxes
+            remark_thin(barrier.outline);
+            remark_thin_wall(barrier);
+        }
         if (!case_.flag(prefix_ + "each")) return scene_.barriers.push_back(std::move(barrier));
         add_each(barrier);
     }
@@ -101,32 +104,12 @@ private:
     std::array<double, 4> terrain_extent() const {
         return (scene_.wider ? scene_.wider->grid : scene_.bed.geometry).pixel_extent();
     }
-    /// Of the nodes that a polygon stands on [m]; infinity where it has no ground.
-    double lowest_ground(const Polygon& polygon) const {
-        const GridGeometry& g = scene_.bed.geometry;
-        double lowest = INFINITY;
-        if (polygon.rings.empty()) return lowest;
-        const NodeBox near = common(widened(cells_of(polygon.rings.front(), g), 1), NodeBox::all(g));
-        if (near.nx < 1 || near.ny < 1) return lowest;
-        Polygons alone;
-        alone.parts = {polygon};
-        const std::vector<char> stands = nodes_of_outline(alone, near.of(g));
-        for (Index j = 0; j < near.ny; ++j)
-            for (Index i = 0; i < near.nx; ++i)
-                if (stands[static_cast<std::size_t>(j * near.nx + i)])
-                    lowest = std::fmin(lowest, scene_.bed.at(near.i0 + i, near.j0 + j));
-        if (std::isinf(lowest))  // between nodes
-            for (const Vec2& corner : polygon.rings.front())
-                lowest = std::fmin(lowest, bed_elevation(scene_.bed, corner.x(), corner.y()));
-        return lowest;
-    }
-
     /// A top that no ground of its outline is below. Erodible ground may free it later.
     void remark_buried(const Barrier& barrier) {
-        if (!barrier.top || scene_.erodible || barrier.outline.parts.empty()) return;
+        if (scene_.erodible || !is_buried(barrier, scene_.bed)) return;
         double lowest = INFINITY;
-        for (const Polygon& polygon : barrier.outline.parts) lowest = std::min(lowest, lowest_ground(polygon));
-        if (!(*barrier.top <= lowest) || std::isinf(lowest)) return;
+        for (const Polygon& polygon : barrier.outline.parts)
+            lowest = std::min(lowest, lowest_ground(polygon, scene_.bed));
         scene_.log.push_back(
             fmt::format("{}: found {:.6g} m; expected more than the ground's {:.6g} m: nothing meets it",
                         case_.place(prefix_ + "top"), *barrier.top, lowest));

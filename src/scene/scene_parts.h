@@ -80,7 +80,7 @@ inline bool water_alone(const CaseFile& file) {
 WaterFriction water_friction(const CaseFile& file);
 
 /// [material.structure] of a scene that has its terrain and its barriers. What does not fit together goes to `problems`.
-std::optional<Structure> read_structure(const CaseFile& file, const Scene& scene, Problems& problems);
+std::optional<Structure> read_structure(const CaseFile& file, Scene& scene, Problems& problems);
 
 /// [deposition] of a scene that has its bed law; remarks go to the scene's log.
 std::optional<Deposition> read_deposition(const CaseFile& file, Scene& scene);

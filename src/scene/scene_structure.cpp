@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "law/structured_keys.h"
+#include "scene/barrier_box.h"
 #include "scene/law_places.h"
 #include "scene/scene_parts.h"
 
@@ -13,7 +14,7 @@ namespace {
 
 class StructureReader {
 public:
-    StructureReader(const CaseFile& file, const Scene& scene, Problems& problems)
+    StructureReader(const CaseFile& file, Scene& scene, Problems& problems)
         : case_(file), scene_(scene), problems_(problems) {}
 
     std::optional<Structure> read() {
@@ -121,16 +122,33 @@ private:
                           "expected an outline that is one rectangle along x and y, the only barrier that structured "
                           "columns know",
                           "give such an outline, or raise the elevation model there");
+        else
+            remark_widened(barrier, table);
+    }
+
+    void remark_widened(const Barrier& barrier, const std::string& table) const {
+        const double cell = scene_.bed.geometry.cell;
+        Vec2 low = barrier.outline.parts.front().rings.front().front(), high = low;
+        for (const Vec2& corner : barrier.outline.parts.front().rings.front())
+            low = low.cwiseMin(corner), high = high.cwiseMax(corner);
+        constexpr double kRoundOff = 1.0 - 1e-9;
+        const double width = (high - low).minCoeff();
+        if (width >= kRoundOff * kBoxCells * cell) return;
+        scene_.log.push_back(fmt::format(
+            "{}: found {:.4g} m, less than {:g} cells of {:.6g} m: structured columns meet a box {:.4g} m wide about "
+            "its "
+            "middle, since they would go through a thinner one; give a smaller grid.cell if that is too wide",
+            case_.place(table + ".outline"), width, kBoxCells, cell, kBoxCells * cell));
     }
 
     const CaseFile& case_;
-    const Scene& scene_;
+    Scene& scene_;
     Problems& problems_;
 };
 
 }  // namespace
 
-std::optional<Structure> read_structure(const CaseFile& file, const Scene& scene, Problems& problems) {
+std::optional<Structure> read_structure(const CaseFile& file, Scene& scene, Problems& problems) {
     return StructureReader(file, scene, problems).read();
 }
 

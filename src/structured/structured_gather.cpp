@@ -158,6 +158,29 @@ bool leaves(StructuredBody& body, Index p, StructuredSums& sums) {
     return true;
 }
 
+/// Nodes in an obstacle do not move into it, but a column next to it feels those before it too, and creeps on. It ends at
+/// the nearest face. What was released deep within an obstacle stays there.
+void keep_out(StructuredBody& body, Index p, int lanes) {
+    constexpr double kDeepest = 0.5;  // more than a column goes in a step [cells]
+    StructuredPoints& q = body.points;
+    const GridGeometry& g = body.grid.geometry();
+    const double per_cell = 1.0 / g.cell;
+    for (const Obstacle& obstacle : body.obstacles) {
+        const double low[2] = {(obstacle.low.x() - g.x0) * per_cell, (obstacle.low.y() - g.y0) * per_cell},
+                     high[2] = {(obstacle.high.x() - g.x0) * per_cell, (obstacle.high.y() - g.y0) * per_cell};
+        const Double4 x = load(&q.x[p], lanes), y = load(&q.y[p], lanes), none = {};
+        const Double4 deep = min(min(x - low[0], high[0] - x), min(y - low[1], high[1] - y));
+        const Mask4 within = (deep > none) & (deep <= kDeepest);
+        if (!any(within)) continue;
+        for (int n = 0; n < lanes; ++n) {
+            if (!within[n]) continue;
+            Array& along = deep[n] == x[n] - low[0] || deep[n] == high[0] - x[n] ? q.x : q.y;
+            const int axis = &along == &q.x ? 0 : 1;
+            along[p + n] = deep[n] == along[p + n] - low[axis] ? low[axis] : high[axis];
+        }
+    }
+}
+
 /// Sums of four columns, and what bounds the next step.
 [[gnu::always_inline]] inline void count(StructuredBody& body, Index p, int lanes, const Batch& b, Sums& sums) {
     const StructuredPoints& q = body.points;
@@ -198,6 +221,7 @@ template <bool kGrains, bool kWater, bool kHexagon>
         stretch(&q.r1x[p], &q.r1y[p], b, dt, lanes);
         stretch(&q.r2x[p], &q.r2y[p], b, dt, lanes);
     }
+    if (!body.obstacles.empty()) keep_out(body, p, lanes);
     const Double4 damage = load(&q.damage[p], lanes);
     sums.worked += strain_four<kWater, kHexagon>(body, b, p, lanes, dt);
     if constexpr (kWater)

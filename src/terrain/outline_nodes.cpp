@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "terrain/bed_points.h"
+#include "terrain/part_of.h"
+
 namespace frana {
 namespace {
 
@@ -46,6 +49,25 @@ std::vector<char> nodes_of_outline(const Polygons& outline, const GridGeometry& 
         for (Index i = 0; i < grid.nx; ++i)
             marks.push_back(is_in_reach(outline, {grid.x(i), grid.y(j)}, grid.cell) ? 1 : 0);
     return marks;
+}
+
+double lowest_ground(const Polygon& polygon, const Raster& bed) {
+    const GridGeometry& g = bed.geometry;
+    double lowest = INFINITY;
+    if (polygon.rings.empty()) return lowest;
+    const NodeBox near = common(widened(cells_of(polygon.rings.front(), g), 1), NodeBox::all(g));
+    if (near.nx < 1 || near.ny < 1) return lowest;
+    Polygons alone;
+    alone.parts = {polygon};
+    const std::vector<char> stands = nodes_of_outline(alone, near.of(g));
+    for (Index j = 0; j < near.ny; ++j)
+        for (Index i = 0; i < near.nx; ++i)
+            if (stands[static_cast<std::size_t>(j * near.nx + i)])
+                lowest = std::fmin(lowest, bed.at(near.i0 + i, near.j0 + j));
+    if (std::isinf(lowest))  // between nodes
+        for (const Vec2& corner : polygon.rings.front())
+            lowest = std::fmin(lowest, bed_elevation(bed, corner.x(), corner.y()));
+    return lowest;
 }
 
 }  // namespace frana

@@ -14,4 +14,8 @@ Vec2 away_from(const Polygons& outline, const Vec2& point);
 /// between them. The cost is that of the grid times the sides.
 std::vector<char> nodes_of_outline(const Polygons& outline, const GridGeometry& grid);
 
+/// Of the nodes that a polygon stands on, or of its corners where it lies between nodes [m]; infinity where it has no
+/// ground.
+double lowest_ground(const Polygon& polygon, const Raster& bed);
+
 }  // namespace frana

@@ -1,0 +1,26 @@
+#pragma once
+// The box that structured columns meet in place of a barrier.
+#include "scene/scene.h"
+
+namespace frana {
+
+/// Least width of a box [cells]. It then holds three rows of nodes. Shape functions are three cells wide: with fewer rows
+/// a column before it has nodes behind it, and goes through.
+constexpr double kBoxCells = 3.0;
+
+/// A rectangle along x and y [m].
+struct BarrierBox {
+    Vec2 low, high;
+    bool holds(const Vec2& place) const { return (place - place.cwiseMax(low).cwiseMin(high)).isZero(0.0); }
+};
+
+/// Around the one polygon of a barrier's outline. Where it is thinner than kBoxCells it is as wide, about its middle.
+BarrierBox box_around(const Barrier& barrier, double cell);
+
+/// Whether the barrier's top lies no higher than all ground that it stands on: nothing meets it.
+bool is_buried(const Barrier& barrier, const Raster& bed);
+
+/// A remark on each barrier in whose box structured columns are released.
+void remark_on_releases_in_boxes(Scene& scene);
+
+}  // namespace frana
