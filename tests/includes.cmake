@@ -101,8 +101,9 @@ room(vtk_io/figures base terrain vtk_io PACKAGES "vtk|EGL/")
 room(vtk_io/module base vtk_io vtk_io/figures)
 room(src/run/web base terrain observe io PACKAGES "nlohmann/")
 room(src/run/folder base terrain observe convert compare run run/web scene io vtk_io vtk_io/figures PACKAGES "nlohmann/")
+room(src/run/converge base terrain compare run/folder scene io vtk_io vtk_io/figures PACKAGES "nlohmann/")
 room(src/run/ensemble base terrain ensemble run run/web run/folder scene io vtk_io vtk_io/figures PACKAGES "nlohmann/")
-room(apps base terrain observe particles convert compare run run/web run/ensemble scene ensemble shallow checks/verify checks/bench checks/fuzz
+room(apps base terrain observe particles convert compare run run/web run/converge run/ensemble scene ensemble shallow checks/verify checks/bench checks/fuzz
      io vtk_io vtk_io/figures run/folder PACKAGES "gdal|ogr|cpl_|CLI/|nlohmann/|nlopt|benchmark/")
 
 room(apps/python base terrain particles run run/folder run/ensemble scene io vtk_io apps)
