@@ -10,6 +10,7 @@
 #include "run/folder/checkpoint.h"
 #include "run/folder/record_file.h"
 #include "run/folder/run_folder.h"
+#include "run/run_loop.h"
 #include "scene/build_scene.h"
 #include "terrain/part_of.h"
 #include "vtk_io/barrier_mesh.h"
@@ -29,8 +30,7 @@ enum class Standing {
 Standing standing_of(const fs::path& run_dir) {
     const auto record = json_in(run_dir / "run.json");
     const std::string reason = record.is_object() ? record.value("exit_reason", "") : "";
-    for (const char* whole : {"end", "rest", "left"})
-        if (reason == whole) return Standing::finished;
+    if (has_answer(reason)) return Standing::finished;
     if (fs::exists(run_dir / "checkpoint.h5")) return Standing::unfinished;
     return reason == "running" ? Standing::broken : Standing::fresh;
 }
