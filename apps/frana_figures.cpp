@@ -14,6 +14,7 @@
 #include "frana_figures.h"
 #include "io/gdal_reader.h"
 #include "run/folder/cutoff.h"
+#include "run/folder/record_file.h"
 #include "run/folder/run_3d.h"
 #include "run/folder/run_film.h"
 #include "run/folder/run_folder.h"
@@ -222,15 +223,6 @@ std::string title_of_run(const fs::path& run_dir) {
     return source.title;
 }
 
-std::optional<Vec2> start_of_run(const fs::path& run_dir) {
-    const auto json = nlohmann::json::parse(text_of(run_dir / "run.json"), nullptr, false);
-    using namespace nlohmann::literals;
-    if (!json.is_object()) return std::nullopt;  // said elsewhere
-    const auto start = json.value("/results/start"_json_pointer, nlohmann::json());
-    if (!start.is_array() || start.size() != 2 || !start[0].is_number() || !start[1].is_number()) return std::nullopt;
-    return Vec2(start[0].get<double>(), start[1].get<double>());
-}
-
 std::vector<LateEntry> late_of_run(const fs::path& run_dir) {
     const auto json = nlohmann::json::parse(text_of(run_dir / "run.json"), nullptr, false);
     std::vector<LateEntry> late;
@@ -248,7 +240,7 @@ FigureSource read_finished_run(const fs::path& run_dir, std::vector<std::string>
     FigureSource source;
     source.run_dir = run_dir;
     read_record(run_dir, source);
-    source.start = start_of_run(run_dir);
+    source.start = start_in(json_in(run_dir / "run.json"));
     source.rasters = read_rasters(run_dir);
     read_bed(source, warnings);
     return source;

@@ -15,14 +15,12 @@ std::string title_of_run(const std::filesystem::path& run_dir);
 /// The case of the folder's resolved.toml; files that it names may have gone. UserError when it is not there.
 CaseFile case_of_run(const std::filesystem::path& run_dir);
 
-/// Title, footer, limit of the covered area, rasters and terrain of a run, from its files. The terrain is that of
-/// terrain.vti, else the elevation model that the case names, on the rasters' nodes. Without either it is empty, and
-/// `warnings` says so. Profiles, gauges and the survey are left out. UserError when the folder holds no finished run.
-/// Where what came in by inflows or later began to flow, from its run.json. For a run without material at the start.
-std::optional<Vec2> start_of_run(const std::filesystem::path& run_dir);
 /// What became of its releases that were to enter later: names, and times of those that did. UserError without run.json.
 std::vector<LateEntry> late_of_run(const std::filesystem::path& run_dir);
 
+/// Title, footer, limit of the covered area, rasters and terrain of a run, from its files. The terrain is that of
+/// terrain.vti, else the elevation model that the case names, on the rasters' nodes. Without either it is empty, and
+/// `warnings` says so. Profiles, gauges and the survey are left out. UserError when the folder holds no finished run.
 FigureSource read_finished_run(const std::filesystem::path& run_dir, std::vector<std::string>& warnings);
 
 }  // namespace frana

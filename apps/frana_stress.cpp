@@ -55,7 +55,7 @@ int map_cfl(const StressOptions& options) {
 }
 
 /// Saves what was shrunk, and says what became of it.
-void report(const Failure& failure, const StressOptions& options) {
+void report(const stress::Failure& failure, const StressOptions& options) {
     fmt::print(stderr, "{} scene {}: {}\n", word_of(failure.model), failure.n, text_of(failure.found));
     const Shrunk& shrunk = failure.shrunk;
     if (shrunk.trials == 0 || !shrunk.verdict.broken) return;
@@ -84,7 +84,7 @@ std::set<std::string> known_failures(const std::filesystem::path& file) {
 Index new_failures(const Campaign& campaign, const StressOptions& options) {
     std::set<std::string> known = known_failures(options.known);
     Index found = 0;
-    for (const Failure& failure : campaign.failures)
+    for (const stress::Failure& failure : campaign.failures)
         if (known.erase(fmt::format("{} {} {} {}", options.seed, word_of(failure.model), failure.n,
                                     failure.found.invariant)) == 0)
             ++found;
@@ -115,7 +115,7 @@ int stress_command(const StressOptions& options) {
     plan.most_shrunk = options.shrunk;
     const Interrupt interrupt(Interrupt::Listen::signals);
     const Campaign campaign = run(
-        plan, [&](const Failure& failure) { report(failure, options); }, [&] { return interrupt.requested(); });
+        plan, [&](const stress::Failure& failure) { report(failure, options); }, [&] { return interrupt.requested(); });
     fmt::print("{}", table_of(campaign));
     if (!options.json.empty()) write_text(options.json, json_of(campaign));
     if (interrupt.requested()) throw Interrupted("interrupted; the scenes so far are above");

@@ -2,7 +2,7 @@
 # of them are above its own line: no arrow runs back up. Each of these arrows is in use. Fails on any other include.
 # cmake -DROOT=... -P includes.cmake
 cmake_minimum_required(VERSION 3.22)
-set(packages "gdal|ogr|cpl_|proj|vtk|hdf5|H5|CLI/|nlohmann/|benchmark/|EGL/")
+set(packages "nlopt|gdal|ogr|cpl_|proj|vtk|hdf5|H5|CLI/|nlohmann/|benchmark/|EGL/")
 set(rooms)
 set(arrows 0)
 set(floors 0)
@@ -101,9 +101,12 @@ room(vtk_io/figures base terrain vtk_io PACKAGES "vtk|EGL/")
 room(vtk_io/module base vtk_io vtk_io/figures)
 room(src/run/web base terrain observe io PACKAGES "nlohmann/")
 room(src/run/folder base terrain observe convert compare run run/web scene io vtk_io vtk_io/figures PACKAGES "nlohmann/")
+room(src/run/converge base terrain compare run run/folder scene io vtk_io vtk_io/figures PACKAGES "nlohmann/")
 room(src/run/ensemble base terrain ensemble run run/web run/folder scene io vtk_io vtk_io/figures PACKAGES "nlohmann/")
-room(apps base terrain observe particles convert compare run run/web run/ensemble scene ensemble shallow checks/verify checks/bench checks/fuzz
-     io vtk_io vtk_io/figures run/folder PACKAGES "gdal|ogr|cpl_|CLI/|nlohmann/|nlopt|benchmark/")
+room(src/run/calibrate base terrain compare ensemble observe run run/folder run/ensemble scene io vtk_io/figures
+     PACKAGES "nlohmann/|nlopt")
+room(apps base terrain particles convert compare run run/web run/folder run/calibrate run/converge run/ensemble scene shallow
+     checks/verify checks/bench checks/fuzz io vtk_io vtk_io/figures PACKAGES "gdal|ogr|cpl_|CLI/|nlohmann/|benchmark/")
 
 room(apps/python base terrain particles run run/folder run/ensemble scene io vtk_io apps)
 

@@ -11,6 +11,7 @@
 #include "ensemble/plan.h"
 #include "observe/observer.h"
 #include "run/interrupt.h"
+#include "run/run_loop.h"
 #include "scene/toolbox.h"
 #include "terrain/sparse_rasters.h"
 
@@ -60,8 +61,7 @@ struct SampleResult {
     std::vector<GaugePeak> gauges;            ///< of the base's
     SparseRasters peaks;  ///< the plan's fields where the ground was covered, by flow or by what lies there
 
-    /// The run has an answer: it came to an end of its own or to time.end.
-    bool ended() const { return reason == "end" || reason == "rest" || reason == "left"; }
+    bool ended() const { return has_answer(reason); }
 };
 
 /// Runs a sample on this thread; further observers `also` may be given. Nothing when the interrupt was requested

@@ -29,6 +29,9 @@ struct RunPlan {
     double rest_fraction = 0.05;  ///< of the scene
 };
 
+/// By the reason of its end, a run has an answer: it came to an end of its own or to time.end.
+inline bool has_answer(const std::string& reason) { return reason == "end" || reason == "rest" || reason == "left"; }
+
 /// What happened, for run.json and the report.
 struct RunSummary {
     /// "end", "until" (its plan was cut short), "rest", "interrupted", "left" (no material remains), "numerics"

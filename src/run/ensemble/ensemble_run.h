@@ -17,6 +17,9 @@ namespace frana {
 /// Refuses a folder in which files lie that an ensemble writes and no ensemble has left there. Throws UserError.
 void require_room_for_ensemble(const std::filesystem::path& dir);
 
+/// Removes what an ensemble has left in a folder: first its record, which says that all is there.
+void remove_ensemble(const std::filesystem::path& dir);
+
 /// The file of the ensemble whose runs are in a folder. Throws UserError where it is none.
 std::filesystem::path origin_of_ensemble(const std::filesystem::path& dir);
 

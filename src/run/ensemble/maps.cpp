@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "base/error.h"
 #include "ensemble/statistics.h"
 #include "io/gdal_writer.h"
-#include "run/ensemble/kept_rows.h"
 #include "run/ensemble/outcomes.h"
 #include "run/folder/barrier_plans.h"
+#include "run/folder/record_file.h"
 #include "run/folder/states.h"
 #include "vtk_io/figures/map_figure.h"
 #include "vtk_io/writers.h"
@@ -209,9 +208,9 @@ private:
 
 /// What the last page in this folder says that it made.
 std::vector<std::string> files_of_last_time(const fs::path& dir) {
-    const auto json = nlohmann::json::parse(text_in(dir / "ensemble.json"), nullptr, false);
+    const auto json = json_in(dir / "ensemble.json");
     std::vector<std::string> files;
-    if (!json.is_object() || !json.contains("files") || !json["files"].is_array()) return files;
+    if (!lists_files(json)) return files;
     for (const auto& file : json["files"])
         if (file.is_string()) files.push_back(file.get<std::string>());
     return files;

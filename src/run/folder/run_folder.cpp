@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -14,6 +13,7 @@
 #include "base/error.h"
 #include "base/layer_name.h"
 #include "run/folder/products.h"
+#include "run/folder/record_file.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -156,15 +156,6 @@ bool same_file(const fs::path& a, const fs::path& b) {
     return fs::equivalent(a, b, not_there) && !not_there;
 }
 
-Json read_record(const fs::path& run_dir) {
-    std::ifstream stream(run_dir / "run.json");
-    return Json::parse(stream, nullptr, false);  // discarded where it is no JSON
-}
-
-bool has_list(const Json& record) {
-    return record.is_object() && record.contains("files") && record["files"].is_array();
-}
-
 /// Whether files of a kind are written while the run goes on, and not at its end.
 bool grows(const ProductKind& kind) {
     for (const char* folder : {"particles", "grid", "profiles", "gauges", "sections", "barriers", "insitu", "insitu/*"})
@@ -178,8 +169,8 @@ bool grows(const ProductKind& kind) {
 /// By run.json: what its list lacks or, when the run did not end, what was there before it. Without a run.json
 /// that says so, all files are others'.
 OtherFiles other_files(const fs::path& run_dir) {
-    const Json record = read_record(run_dir);
-    const bool ended = has_list(record);
+    const Json record = json_in(run_dir / "run.json");
+    const bool ended = lists_files(record);
     const bool begun = record.is_object() && record.contains("others") && record["others"].is_object();
     const auto is_theirs = [&](const std::string& name, const fs::path& file) {
         if (ended) return std::find(record["files"].begin(), record["files"].end(), name) == record["files"].end();
@@ -372,8 +363,8 @@ void clear_for_resume(const fs::path& run_dir) { clear(run_dir, other_files(run_
 
 std::function<void()> adding_to_files(const fs::path& run_dir) {
     return [run_dir, others = other_files(run_dir)] {
-        Json record = read_record(run_dir);
-        if (!has_list(record)) return;
+        Json record = json_in(run_dir / "run.json");
+        if (!lists_files(record)) return;
         std::vector<std::string> made = record["files"];
         for (const fs::path& file : files_named_like_products(run_dir))
             if (!is_others(others, run_dir, file)) made.push_back(relative_to(run_dir, file));

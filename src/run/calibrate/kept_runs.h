@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ensemble/calibration_plan.h"
+#include "run/run_loop.h"
 
 namespace frana {
 
@@ -18,7 +19,7 @@ struct EventRun {
     EventScores scores;           ///< nothing known where the run has no answer
     bool still_moves = false;     ///< as of SampleResult
 
-    bool ended() const { return reason == "end" || reason == "rest" || reason == "left"; }
+    bool ended() const { return has_answer(reason); }
 };
 
 /// DIR/kept/runs.csv: a row of each run. A run's results depend on the values of the keys alone, so a row serves any

@@ -1,4 +1,4 @@
-#include "frana_calibrate_runs.h"
+#include "run/calibrate/event_runs.h"
 
 namespace frana {
 

@@ -1,13 +1,10 @@
-#include "frana_calibrate_search.h"
+#include "run/calibrate/search.h"
 
 #include <algorithm>
 #include <cmath>
 #include <exception>
 #include <nlopt.hpp>
 #include <set>
-
-#include "frana_calibrate.h"
-#include "frana_calibrate_runs.h"
 
 namespace frana {
 namespace {
@@ -23,9 +20,8 @@ constexpr Index kMostPerKey = 20;    ///< evaluations
 /// Minus the logarithm of the likelihood of points, and what their runs were like.
 class Misfits {
 public:
-    Misfits(const EventRuns& runs, KeptRuns& kept, const Calibration& calibration)
+    Misfits(const Calibration& calibration, const RunsAt& runs)
         : runs_(runs),
-          kept_(kept),
           plan_(calibration.plan),
           asked_(calibration.posterior.points().begin(), calibration.posterior.points().end()) {
         for (const double log : calibration.posterior.log_likelihood())
@@ -34,7 +30,7 @@ public:
 
     /// Not finite where a run has no answer. Nothing when an end was requested.
     std::optional<std::vector<double>> at(const std::vector<std::vector<double>>& points) {
-        const auto runs = runs_.at(points, kept_, [](const EventRun&) {});
+        const auto runs = runs_(points);
         if (!runs) return std::nullopt;
         std::vector<double> all(points.size(), 0.0);
         scores_.assign(points.size(), {});
@@ -58,8 +54,7 @@ public:
     Index evaluations() const { return evaluations_; }
 
 private:
-    const EventRuns& runs_;
-    KeptRuns& kept_;
+    const RunsAt& runs_;
     const CalibrationPlan& plan_;
     std::set<std::vector<double>> asked_;
     double worst_ = 0.0;
@@ -137,10 +132,10 @@ double call(const std::vector<double>& point, std::vector<double>& /*gradient*/,
 
 }  // namespace
 
-std::optional<Optimum> search_optimum(const EventRuns& runs, KeptRuns& kept, const Calibration& calibration) {
+std::optional<Optimum> search_optimum(const Calibration& calibration, const RunsAt& runs) {
     std::vector<double> start = calibration.posterior.points()[calibration.posterior.best()];
     for (double& u : start) u = std::clamp(u, kEdge, 1.0 - kEdge);
-    Misfits misfits(runs, kept, calibration);
+    Misfits misfits(calibration, runs);
     const auto around = misfits.at(neighbours(start));
     if (!around) return std::nullopt;
     Optimum best;

@@ -1,4 +1,4 @@
-#include "frana_calibrate_predictions.h"
+#include "ensemble/predictions.h"
 
 #include <fmt/core.h>
 

@@ -5,10 +5,9 @@
 #include <cmath>
 #include <tuple>
 
+#include "ensemble/predictions.h"
 #include "ensemble/statistics.h"
-#include "frana_calibrate.h"
-#include "frana_calibrate_numbers.h"
-#include "frana_calibrate_predictions.h"
+#include "run/calibrate/results.h"
 
 namespace frana {
 namespace {

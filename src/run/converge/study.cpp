@@ -1,18 +1,16 @@
-#include "frana_converge_study.h"
+#include "run/converge/study.h"
 
 #include <fmt/core.h>
 
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "compare/deposit.h"
 #include "compare/flow_width.h"
 #include "compare/outline.h"
 #include "compare/runout.h"
-#include "frana_figures.h"
 #include "run/folder/products.h"
+#include "run/folder/record_file.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -20,7 +18,7 @@ namespace {
 
 /// What of a run is read.
 struct RunFiles {
-    nlohmann::json record;
+    nlohmann::ordered_json record;
     std::vector<ProductRaster> rasters;
     fs::path folder;
 
@@ -46,8 +44,7 @@ struct RunFiles {
 };
 
 RunFiles read_run(const fs::path& folder) {
-    std::ifstream stream(folder / "run.json");
-    RunFiles run{nlohmann::json::parse(stream, nullptr, false), {}, folder};
+    RunFiles run{json_in(folder / "run.json"), {}, folder};
     for (const char* key : {"results", "wall_seconds", "exit_reason", "flow_width_cells"})
         if (!run.record.is_object() || !run.record.contains(key))
             throw UserError(
@@ -67,7 +64,7 @@ struct Path {
 Path path_of(const RunFiles& finest, const Raster& bed, std::vector<std::string>& remarks) {
     Path path;
     path.start = release_middle(finest.raster("arrival_time"));
-    if (!path.start) path.start = start_of_run(finest.folder);
+    if (!path.start) path.start = start_in(finest.record);
     if (!path.start) {
         remarks.push_back(
             "it is not known where the flow begins, so neither runout nor reach are, and the rule goes without");

@@ -1,4 +1,5 @@
-// What a calibration leaves: calibrate.json, report.md, runs.csv, posterior.csv, posterior.png.
+#include "run/calibrate/results.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -10,11 +11,9 @@
 #include "base/error.h"
 #include "base/text_file.h"
 #include "base/version.h"
+#include "ensemble/predictions.h"
 #include "ensemble/statistics.h"
-#include "frana_calibrate.h"
-#include "frana_calibrate_kept.h"
-#include "frana_calibrate_numbers.h"
-#include "frana_calibrate_predictions.h"
+#include "run/calibrate/kept_runs.h"
 #include "run/ensemble/shard_store.h"
 #include "vtk_io/figures/chart_figure.h"
 

@@ -1,4 +1,4 @@
-#include "frana_calibrate_kept.h"
+#include "run/calibrate/kept_runs.h"
 
 #include <fmt/format.h>
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "frana_calibrate_event.h"
-#include "frana_calibrate_kept.h"
 #include "io/gdal_reader.h"
+#include "run/calibrate/event_survey.h"
+#include "run/calibrate/kept_runs.h"
 #include "run/ensemble/run_pool.h"
 #include "run/interrupt.h"
 #include "scene/shared_reader.h"

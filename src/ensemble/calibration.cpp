@@ -1,4 +1,4 @@
-#include "frana_calibrate_numbers.h"
+#include "ensemble/calibration.h"
 
 #include <algorithm>
 

@@ -38,8 +38,8 @@ struct ConvergenceStudy {
     std::vector<std::string> files;  ///< that write_study() made, in the folder
 };
 
-/// Fills in what the run folders tell. `bed`: of the finest run, for the path along which all runouts are measured.
-/// Throws UserError when a folder lacks a raster or its run.json.
+/// Fills in what the run folders tell, and judges it. `bed`: of the finest run, for the path along which all runouts
+/// are measured. Throws UserError when a folder lacks a raster or its run.json.
 void measure_runs(ConvergenceStudy& study, const Raster& bed);
 
 /// Names of the files that a study may leave in its folder besides those of its runs.

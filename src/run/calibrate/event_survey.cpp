@@ -1,4 +1,4 @@
-#include "frana_calibrate_event.h"
+#include "run/calibrate/event_survey.h"
 
 #include <fmt/core.h>
 

@@ -8,7 +8,7 @@
 #include "base/atomic_file.h"
 #include "base/version.h"
 #include "compare/flow_width.h"
-#include "frana_converge_study.h"
+#include "run/converge/study.h"
 #include "vtk_io/figures/chart_figure.h"
 
 namespace frana {

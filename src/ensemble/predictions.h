@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "frana_calibrate.h"
+#include "ensemble/calibration.h"
 
 namespace frana {
 
