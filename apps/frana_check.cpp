@@ -195,7 +195,7 @@ std::string width_text(const Scene& scene) {
         "width       about {:.3g} m, {:.2g} cells, from the release ({:.3g} m across) and the valley below; a run "
         "measures it\n",
         expected.width, expected.width / cell, expected.release);
-    const std::string remark = width_remark(expected.width, cell);
+    const std::string remark = width_remark(expected.width, cell, scene.structure || !scene.water);
     return remark.empty() ? text : text + fmt::format("remark      by the estimate {}\n", remark);
 }
 

@@ -163,6 +163,12 @@ TEST_CASE("A lake within an outline rests to round-off, and other hollows stay d
     CHECK(has(said_of(gis, level + "level_within = \"lake.geojson\"\n"),
               "its outline cuts it off over 22 m, where it breaks out at the start as behind a dam"));
     CHECK(scene_of(gis, level).water->lake.empty());
+    // Sides that have keys are held by those.
+    const std::string high = "level = 1600\n";
+    CHECK(has(said_of(gis, high), "it meets open sides over"));
+    CHECK_FALSE(
+        has(said_of(gis, high + "[water.sides]\nwest = \"wall\"\neast = 1601\nnorth = \"wall\"\nsouth = \"free\"\n"),
+            "it meets open sides over"));
 }
 
 TEST_CASE("A release up to one level within its shore rests as water as well", "[water][alone]") {

@@ -180,6 +180,22 @@ TEST_CASE("Sums through lines go on after a resume and on any number of threads,
     CHECK(other.passed() == straight.passed());
 }
 
+// Nodes without material counted as resting: half a cell from the edge a gauge had half of the speed.
+TEST_CASE("Next to dry ground a gauge has the speed of what is there", "[gauges][sections]") {
+    Scene scene = scene_on(41, 21, 1.0, [](double, double) { return 0.0; });
+    fill(scene, [](double x, double y) { return x > 10 && x < 20 && y > 5 && y < 15 ? 1.0 : 0.0; });
+    scene.particles.vx.assign(scene.particles.x.size(), 2.0);
+    const DepthAveraged run(scene);
+    for (const double x : {9.2, 9.9, 15.0, 20.1, 20.9}) {
+        const Sample at = run.at({x, 10.3});
+        CAPTURE(x, at.depth);
+        REQUIRE(at.depth > 0.0);
+        CHECK(at.velocity.x() == Approx(2.0).epsilon(1e-12));
+        CHECK(at.speed == Approx(2.0).epsilon(1e-12));
+    }
+    CHECK(run.at({30.0, 10.3}).speed == 0.0);
+}
+
 TEST_CASE("Beyond the terrain a line has no discharge", "[sections]") {
     class Everywhere final : public Probe {
     public:

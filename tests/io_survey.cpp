@@ -125,6 +125,17 @@ TEST_CASE("Holes and parts of a survey remain, and overlapping polygons count on
                                                                   utm));
     CHECK(area_of(rings_of(read(twice, wkt_of("EPSG:32632"), log))) == Approx(15000).epsilon(1e-12));
     CHECK(any_contains(log, "overlap by 5000 m2"));
+
+    // A side that two polygons share is no outline: however a surveyor cuts the whole, its outline is that of the whole.
+    std::vector<std::string> strips;
+    for (int n = 0; n < 10; ++n) strips.push_back(polygon(ring(600000 + 10 * n, 5100000, 600010 + 10 * n, 5100100)));
+    const Polygons whole = read(files.text("strips.geojson", collection(strips, utm)), wkt_of("EPSG:32632"), log);
+    CHECK(any_contains(log, "10 polygons that share sides become 1"));
+    double length = 0.0;
+    for (const auto& outline : rings_of(whole))
+        for (std::size_t k = 0; k < outline.size(); ++k)
+            length += (outline[(k + 1) % outline.size()] - outline[k]).norm();
+    CHECK(length == Approx(400.0).epsilon(1e-9));
 }
 
 TEST_CASE("A raster above 0 is a survey too, hole and all, in its own CRS or another", "[survey]") {

@@ -108,11 +108,14 @@ TEST_CASE("The cell that would do has six across and is a round number", "[width
 }
 
 TEST_CASE("Fewer than six cells across are a remark with the cell that would do", "[width]") {
-    CHECK(width_remark(60.0, 10.0).empty());
-    CHECK(width_remark(Raster::nodata, 10.0).empty());
-    CHECK(width_remark(40.0, 10.0) ==
+    CHECK(width_remark(60.0, 10.0, true).empty());
+    CHECK(width_remark(Raster::nodata, 10.0, true).empty());
+    CHECK(width_remark(40.0, 10.0, true) ==
           "the flow is 4 cells wide (40 m, median over its length); expected 6 or more, or its path and runout hang on "
           "the grid, and by a few cells on particles.per_cell (frana converge --per-cell 4,9,16 measures it); "
           "grid.cell = 5 "
           "would do");
+    CHECK(width_remark(40.0, 10.0, false) ==
+          "the flow is 4 cells wide (40 m, median over its length); expected 6 or more, or its path and runout hang on "
+          "the grid; grid.cell = 5 would do");
 }

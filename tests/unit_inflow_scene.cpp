@@ -85,6 +85,21 @@ TEST_CASE("The side and the speed of an inflow may be given", "[scene][inflow]")
     CHECK(number.inflows[0].speed == std::vector<double>(2, 7.0 / std::sqrt(1.25)));
 }
 
+TEST_CASE("A table may go on long after the run, but not bring more by its end than the terrain holds",
+          "[scene][inflow]") {
+    const FreshFolder folder;
+    std::ofstream(folder.path() / "river.csv") << "t [s], discharge [m3/s]\n0, 200\n8640000, 200\n";
+    std::ofstream(folder.path() / "litres.csv") << "t [s], discharge [m3/s]\n0, 2e6\n8640000, 2e6\n";
+    const Scene river = built(with(kLine + "table = \"river.csv\"\n"), folder.path());
+    const bool told = std::any_of(river.log.begin(), river.log.end(), [](const std::string& remark) {
+        return remark.find("found a table that goes on to 8.64e+06 s") != std::string::npos;
+    });
+    CHECK(told);
+    CHECK(only_problem([&] {
+              built(with(kLine + "table = \"litres.csv\"\n"), folder.path());
+          }).find("m3 by time.end, more than 100 m") != std::string::npos);
+}
+
 TEST_CASE("The line of an inflow, and of a section, may be that of a vector file", "[scene][inflow][sections]") {
     FakeGis gis = slope_gis();
     gis.lines["line.geojson"] = {{{1100, 2050}, {1100, 2050}, {1100, 2080}}};  // its first point twice

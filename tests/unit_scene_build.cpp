@@ -13,6 +13,7 @@
 #include "run/simulation.h"
 #include "scene/build_scene.h"
 #include "scene/scene_parts.h"
+#include "slope_case.h"
 
 using namespace frana;
 
@@ -100,6 +101,34 @@ TEST_CASE("A mask says where, in its own pixels, and a number or raster says how
           Approx(20 * 20 * 1.5).epsilon(round_off));
     CHECK(sum(built(with_release("mask = \"mask.tif\"\ndepth = \"depth.tif\""), gis).scene.particles.volume) ==
           Approx(10 * 20 * (2.0 + 4.0)).epsilon(round_off));
+}
+
+TEST_CASE("A raster of depths below 0 is a remark where it was resampled, and refused where it is a difference",
+          "[scene]") {
+    FakeGis gis = slope_gis();
+    const auto with_depths = [&](double below) {
+        gis.rasters["depth.tif"] = sampled(grid, [=](double x, double) {
+            return x > 1060 ? 2.0 : x > 1055 ? below : 0.0;
+        });
+    };
+    with_depths(-0.05);
+    const BuiltScene resampled = built(with_release("depth = \"depth.tif\""), gis);
+    const auto& log = resampled.scene.log;
+    CHECK(std::any_of(log.begin(), log.end(), [](const std::string& remark) {
+        return remark.find("pixels below 0 with ") != std::string::npos &&
+               remark.find("they are taken as 0") != std::string::npos;
+    }));
+    with_depths(0.0);
+    CHECK(sum(resampled.scene.particles.volume) ==
+          Approx(sum(built(with_release("depth = \"depth.tif\""), gis).scene.particles.volume)).epsilon(round_off));
+    gis.rasters["depth.tif"] = sampled(grid, [](double x, double) { return x > 1100 ? -3.0 : x < 1060 ? 2.0 : 0.0; });
+    CHECK(test::only_problem([&] { built(with_release("depth = \"depth.tif\""), gis); })
+              .find("expected depths of what is released, 0 or more; where it is after minus before, its sign is the "
+                    "other") != std::string::npos);
+    // Within an outline the rest of a difference does not matter.
+    gis.rasters["depth.tif"] = sampled(grid, [](double x, double) { return x < 1045 ? -3.0 : 2.0; });
+    CHECK(sum(built(with_release("depth = \"depth.tif\"\noutline = \"release.geojson\""), gis).scene.particles.volume) >
+          0.0);
 }
 
 TEST_CASE("A lake fills the whole window up to its surface", "[scene]") {

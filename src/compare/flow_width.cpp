@@ -177,13 +177,14 @@ double flow_width(const Raster& depth, double limit) {
 
 double cell_that_resolves(double width) { return round_number_below(width / least_cells_across); }
 
-std::string width_remark(double width, double cell) {
+std::string width_remark(double width, double cell, bool particles) {
     if (!(width < least_cells_across * cell)) return "";
     return fmt::format(
         "the flow is {:.2g} cells wide ({:.3g} m, median over its length); expected {:g} or more, or its path and "
-        "runout hang on the grid, and by a few cells on particles.per_cell (frana converge --per-cell 4,9,16 measures "
-        "it); grid.cell = {:g} would do",
-        width / cell, width, least_cells_across, cell_that_resolves(width));
+        "runout hang on the grid{}; grid.cell = {:g} would do",
+        width / cell, width, least_cells_across,
+        particles ? ", and by a few cells on particles.per_cell (frana converge --per-cell 4,9,16 measures it)" : "",
+        cell_that_resolves(width));
 }
 
 }  // namespace frana

@@ -23,6 +23,7 @@ double flow_width(const Raster& depth, double limit);
 double cell_that_resolves(double width);
 
 /// What to tell of a flow with too few cells across it. Empty when they are enough, or when there is no width.
-std::string width_remark(double width, double cell);
+/// `particles`: there are some, whose number counts as well.
+std::string width_remark(double width, double cell, bool particles);
 
 }  // namespace frana

@@ -92,17 +92,18 @@ void StructuredRun::particle_fields(Frame& frame) {
         const double up = from_nodes(body, p, [&](Index k) { return map_.climb(k, q.vx[p], q.vy[p]); });
         const double steep = std::sqrt(1.0 + bx * bx + by * by);
         const double holds = body.share * (1.0 - q.damage[p]);
+        const double density = body.water ? q.mass[p] / q.volume[p] : body.density;
         position[3 * p] = x.x(), position[3 * p + 1] = x.y(), position[3 * p + 2] = z + h;
         depth[p] = h, thickness[p] = h / steep;
         velocity[3 * p] = q.vx[p], velocity[3 * p + 1] = q.vy[p], velocity[3 * p + 2] = up;
         speed[p] = std::sqrt(q.vx[p] * q.vx[p] + q.vy[p] * q.vy[p] + up * up);
         elevation[p] = z, surface[p] = z + h;
-        pressure[p] = body.density * h * from_nodes(body, p, [&](Index k) { return StructuredMap::pressing(body, k); });
+        pressure[p] = density * h * from_nodes(body, p, [&](Index k) { return StructuredMap::pressing(body, k); });
         mass[p] = q.mass[p], volume[p] = q.volume[p], id[p] = static_cast<double>(q.id[p]);
         stress[3 * p] = holds * q.xx[p], stress[3 * p + 1] = holds * q.yy[p], stress[3 * p + 2] = holds * q.xy[p];
         const Sym2 k =
             earth_pressure({q.cxx[p], q.cyy[p], 0.5 * (q.cxy[p] + q.cyx[p])}, h, q.normal_gravity[p], body.rankine);
-        const double thrust = 0.5 * (1.0 - holds) * body.density * q.normal_gravity[p] * h;
+        const double thrust = 0.5 * (1.0 - holds) * density * q.normal_gravity[p] * h;
         effective[3 * p] = stress[3 * p] - thrust * k.xx, effective[3 * p + 1] = stress[3 * p + 1] - thrust * k.yy,
                       effective[3 * p + 2] = stress[3 * p + 2] - thrust * k.xy;
         damage[p] = q.damage[p];
@@ -141,7 +142,7 @@ void StructuredRun::node_fields(Frame& frame) {
         thickness[n] = h / std::sqrt(1.0 + ground.slope_x * ground.slope_x + ground.slope_y * ground.slope_y);
         velocity[3 * n] = node.vx, velocity[3 * n + 1] = node.vy, velocity[3 * n + 2] = up;
         speed[n] = std::sqrt(node.vx * node.vx + node.vy * node.vy + up * up);
-        pressure[n] = body.density * StructuredMap::pressing(body, k) * h;
+        pressure[n] = StructuredMap::density_of(body, k) * StructuredMap::pressing(body, k) * h;
     });
 }
 
@@ -216,13 +217,14 @@ void StructuredRun::water_fields(Frame& frame) {
         if (!(h > 0.0) || !std::isfinite(elevation[n])) return;
         const Vec2 slope = slope_under(water, k), v = velocity_of(water, k);
         const double own[3] = {v.x(), v.y(), map_.climb(k, v.x(), v.y())}, all = depth[n] + h,
-                     columns = flow().body().density * depth[n], both = columns + water_density_ * h;
+                     columns = StructuredMap::density_of(flow().body(), k) * depth[n],
+                     both = columns + water_density_ * h;
         for (int c = 0; c < 3; ++c)
             velocity[3 * n + c] = (columns * velocity[3 * n + c] + water_density_ * h * own[c]) / both;
         speed[n] = Vec3(velocity[3 * n], velocity[3 * n + 1], velocity[3 * n + 2]).norm();
         depth[n] = all, surface[n] += h;
         thickness[n] = all / std::sqrt(1.0 + slope.x() * slope.x() + slope.y() * slope.y());
-        pressure[n] += water_density_ * water.normal_gravity[k] * h;
+        pressure[n] += water_density_ * water.pressing(k, v) * h;
     });
 }
 

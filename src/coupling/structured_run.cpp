@@ -75,6 +75,7 @@ StructuredRun::StructuredRun(const Scene& scene, Start start)
     : bed_(scene.bed),
       barriers_(scene.barriers),
       water_density_(scene.water ? scene.water->exchange.material.fluid_density : 0.0),
+      solid_density_(scene.water ? scene.water->exchange.material.solid_density : scene.density),
       solids_(scene.structure.has_value()),
       inflows_(!scene.inflows.empty()),
       alone_(scene.water ? nullptr : std::make_unique<StructuredFlow>(started(scene, start))),
@@ -224,7 +225,7 @@ std::optional<WaterBudget> StructuredRun::water_budget() const {
     b.released = flow().status().released;
     b.rained = l.rained, b.infiltrated = l.infiltrated, b.left = l.left + flow().status().confined_left;
     b.entered = l.entered, b.fed = l.fed, b.infiltrated_mass = water_density_ * l.infiltrated;
-    b.solids_left = flow().status().mass_left - water_density_ * flow().status().confined_left;
+    b.solids_left = (flow().status().mass_left - water_density_ * flow().status().confined_left) / solid_density_;
     b.residual = both_->volume_residual();
     b.bed = water_density_ * l.braked, b.viscosity = water_density_ * l.sheared, b.drag = flow().status().dragged;
     b.steps = both_->sub_cycles();

@@ -70,7 +70,8 @@ private:
     Raster bed_;
     std::vector<Barrier> barriers_;
     double water_density_ = 0.0;
-    bool solids_;  ///< otherwise there is water alone
+    double solid_density_;  ///< of grains [kg/m^3]
+    bool solids_;           ///< otherwise there is water alone
     bool inflows_;
     std::unique_ptr<StructuredFlow> alone_;  ///< of a dry run
     std::unique_ptr<TwoPhaseFlow> both_;     ///< of one with water

@@ -132,7 +132,8 @@ std::unique_ptr<OGRMultiPolygon> to_ogr(const Polygons& polygons) {
     return all;
 }
 
-/// Polygons that overlap become one; others stay as they are, to the last digit.
+/// Polygons that overlap or share sides become one, since a side within the whole is no outline of it. Others stay as they
+/// are, to the last digit.
 void unite(Polygons& polygons, const fs::path& file, std::vector<std::string>& log) {
     if (polygons.parts.size() < 2) return;
     const std::unique_ptr<OGRMultiPolygon> all = to_ogr(polygons);
@@ -152,10 +153,13 @@ void unite(Polygons& polygons, const fs::path& file, std::vector<std::string>& l
     });
     const double twice = all->get_Area() - area;
     constexpr double round_off = 1e-9;
-    if (!(twice > round_off * area)) return;
+    const bool overlap = twice > round_off * area;
+    if (!overlap && parts.size() >= polygons.parts.size()) return;
+    log.push_back(overlap ? fmt::format("{}: its polygons overlap by {:.6g} m2, which count once",
+                                        file.filename().string(), twice)
+                          : fmt::format("{}: {} polygons that share sides become {}", file.filename().string(),
+                                        polygons.parts.size(), parts.size()));
     polygons.parts = std::move(parts);
-    log.push_back(
-        fmt::format("{}: its polygons overlap by {:.6g} m2, which count once", file.filename().string(), twice));
 }
 
 void require_overlap(const Polygons& polygons, const std::array<double, 4>& extent, const fs::path& file) {

@@ -117,7 +117,7 @@ struct WaterBudget {
     double entered = 0.0;                                ///< from a lake beyond open sides [m3]
     double fed = 0.0;                                    ///< by inflows [m3]
     double infiltrated_mass = 0.0;                       ///< [kg]
-    double solids_left = 0.0;                            ///< mass of grains that left within columns [kg]
+    double solids_left = 0.0;                            ///< grains that left within columns, without pores [m3]
     double residual = 0.0;                               ///< of all these: round-off [m3]
     double bed = 0.0, viscosity = 0.0, drag = 0.0;       ///< energy lost there [J]
     double steps = 0.0;                                  ///< of the columns for each of the water

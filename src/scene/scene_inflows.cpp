@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/constants.h"
+#include "base/discharge.h"
 #include "law/bed/normal_flow.h"
 #include "particles/generate.h"
 #include "particles/outline_area.h"
@@ -331,11 +332,13 @@ private:
     void require_room(const Hydrograph& table) const {
         const GridGeometry& g = scene_.wider ? scene_.wider->grid : bed_.geometry;
         const double most = kDeepest * g.cell * g.cell * static_cast<double>(g.size());
-        if (table.volume() > most)
-            throw UserError(
-                fmt::format("found {:.4g} m3, more than {:.0f} m of depth on all of the terrain; expected less; check "
-                            "the units of the table",
-                            table.volume(), kDeepest));
+        // A river's table may go on for days.
+        const double comes = given("table") ? volume_until(table, scene_.end) : table.volume();
+        if (comes > most)
+            throw UserError(fmt::format(
+                "found {:.4g} m3{}, more than {:.0f} m of depth on all of the terrain; expected less; check "
+                "the units",
+                comes, given("table") ? " by time.end" : "", kDeepest));
         if (table.time.front() >= scene_.end)
             throw UserError(
                 fmt::format("found a table that begins at {:.6g} s; expected a time before time.end = {:.6g} s; "

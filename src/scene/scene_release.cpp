@@ -190,7 +190,9 @@ private:
         } else if (!depth_of_features_ && is_file("depth")) {
             reader_.require_metres(case_.path(key("depth")));
             release.depth_field = raster(case_.path(key("depth")));
-            remark_on_gaps(*release.depth_field, claimed(release, release.depth_field->geometry), place("depth"), log_);
+            const NodeMarks wanted = claimed(release, release.depth_field->geometry);
+            remark_on_gaps(*release.depth_field, wanted, place("depth"), log_);
+            judge_negative(*release.depth_field, wanted);
             *release.depth_field = finer_field(*release.depth_field, bed_.geometry.cell);
         } else if (auto below = depth_below_surface(release)) {
             release.depth_field = finer_field(*below, bed_.geometry.cell);
@@ -200,6 +202,31 @@ private:
             release.depth = depth_number("depth");
         }
         if (normal) make_vertical(*release.depth_field, claimed(release, release.depth_field->geometry));
+    }
+
+    /// A raster of depths has some below 0 where it was resampled: a remark. Where that is much it is a difference of two
+    /// surveys, in which the scar has one sign and the deposit the other.
+    void judge_negative(const Raster& depth, const NodeMarks& wanted) const {
+        constexpr double kMuch = 0.1;  // of what is above 0
+        std::size_t count = 0, first = 0;
+        double below = 0.0, above = 0.0;
+        for (std::size_t k = depth.values.size(); k-- > 0;) {
+            const double value = depth.values[k];
+            if (!wanted[k] || std::isnan(value)) continue;
+            if (value < 0.0) ++count, first = k, below -= value;
+            above += std::max(0.0, value);
+        }
+        if (count == 0) return;
+        const double pixel = depth.geometry.cell * depth.geometry.cell;
+        const std::string found = fmt::format("found {} pixels below 0 with {:.4g} m3, such as {:.6g} at {}", count,
+                                              below * pixel, depth.values[first], place_text(depth.geometry, first));
+        if (below > kMuch * above)
+            throw UserError(
+                fmt::format("{}; expected depths of what is released, 0 or more; where it is after minus before, its "
+                            "sign is the other "
+                            "one, and its deposit is none of the release",
+                            found));
+        log_.push_back(fmt::format("{}: {}; they are taken as 0", place("depth"), found));
     }
 
     /// The depth below a surface that has the pixels of the elevation model, in those, where they are larger than the
@@ -255,7 +282,10 @@ private:
                             : Raster::filled(grid, depth_number(name));
         if (field.source.empty()) field.source = key(name);
         if (file) remark_on_gaps(field, places, place(name), log_);
-        if (!given("surface")) return field;
+        if (!given("surface")) {
+            if (file) judge_negative(field, places);
+            return field;
+        }
         for (Index j = 0; j < grid.ny; ++j) {
             for (Index i = 0; i < grid.nx; ++i) {
                 const double bed = bed_at(grid, i, j);

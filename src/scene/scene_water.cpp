@@ -136,20 +136,25 @@ public:
                 const double deep = depth(i, j);
                 if (!(deep > 0.0)) continue;
                 depths += deep, nodes += 1.0, deepest = std::max(deepest, deep);
-                edges += (i == 0 || i == g.nx - 1 ? 1.0 : 0.0) + (j == 0 || j == g.ny - 1 ? 1.0 : 0.0);
+                edges +=
+                    goes_on(0, i == 0) + goes_on(1, i == g.nx - 1) + goes_on(2, j == 0) + goes_on(3, j == g.ny - 1);
                 for (const auto& [di, dj] : {std::pair<Index, Index>{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
                     cut += flows_out(i + di, j + dj) ? 1.0 : 0.0;
             }
     }
     double lowest = INFINITY, deepest = 0.0;  ///< ground where it may be; its depth [m]
     double depths = 0.0, nodes = 0.0;         ///< sum over its nodes [m]; their number
-    double edges = 0.0, cut = 0.0;  ///< their edges at sides; those beyond which there is lower ground without it
+    double edges = 0.0,
+           cut = 0.0;  ///< their edges at sides without keys; those beyond which there is lower ground without it
 
 private:
     bool may_be(Index i, Index j) const {
         return water_.lake.empty() || water_.lake[static_cast<std::size_t>(j * bed_.geometry.nx + i)];
     }
     double depth(Index i, Index j) const { return may_be(i, j) ? *water_.level - bed_.at(i, j) : 0.0; }
+    double goes_on(std::size_t side, bool at_side) const {
+        return at_side && water_.sides[side].is == WaterPhase::Side::Is::as_sides ? 1.0 : 0.0;
+    }
     bool flows_out(Index i, Index j) const {
         const GridGeometry& g = bed_.geometry;
         const bool inside = i >= 0 && j >= 0 && i < g.nx && j < g.ny;

@@ -116,9 +116,11 @@ Sample DepthAveraged::at(const Vec2& point) const {
         const Index k = flow_.grid.at(i, j);
         sample.elevation += w * flow_.bed.z[k];
         if (!flow_.is_in_reach(i, j)) continue;
-        sample.depth += w * own_depth(k);
-        sample.velocity += w * Vec2(flow_.nodes.before[k].x, flow_.nodes.before[k].y);
+        const double depth = w * own_depth(k);
+        sample.depth += depth;
+        sample.velocity += depth * Vec2(flow_.nodes.before[k].x, flow_.nodes.before[k].y);
     }
+    if (sample.depth > 0.0) sample.velocity /= sample.depth;  // of what is there: dry nodes have none
     const BedHere bed = bed_at(flow_, steep_, curved_, u, v);
     sample.speed =
         std::hypot(sample.velocity.x(), sample.velocity.y(), sample.velocity.dot(Vec2(bed.path_x, bed.path_y)));

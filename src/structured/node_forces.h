@@ -209,9 +209,9 @@ template <class Real, class Law>
 }
 
 /// A bed law's friction over a step that would change `before` to `driven` (law/bed/node_friction.h). `across`: gravity
-/// normal to the ground [m/s^2].
+/// normal to the ground [m/s^2]. `density`: of what is there, with its confined water [kg/m^3].
 template <class Real, class Law>
-[[gnu::always_inline]] inline FlatOf<Real> braked(const Law& law, const StructuredBody& body,
+[[gnu::always_inline]] inline FlatOf<Real> braked(const Law& law, const StructuredBody& body, double density,
                                                   const GroundOf<Real>& ground, Real across, Real depth,
                                                   const FlatOf<Real>& before, const FlatOf<Real>& driven,
                                                   const StepTimes& times) {
@@ -221,7 +221,7 @@ template <class Real, class Law>
     const Real along = ground.slope.dot(unit), steep = sqrt(1.0 + ground.slope.dot(ground.slope)),
                kappa = sqrt(1.0 + along * along), cosine = 1.0 / steep;
     const BedStateOf<Real> state{
-        across * steep / kappa, max(depth * cosine, none + 1e-9), kappa, cosine, body.gravity, body.density};
+        across * steep / kappa, max(depth * cosine, none + 1e-9), kappa, cosine, body.gravity, density};
     const Real start = max(none, before.dot(unit)), left = speeds_after(law, state, start, speed, times.velocity_dt);
     return mean_if_stopping(law, state, BrakedOf<Real>{start, speed, left, times.velocity_dt, times.drift}) * unit;
 }

@@ -23,6 +23,11 @@ struct Met {
 bool has_water(const StructuredBody& body, Index k);
 /// A node's columns, without what they released in the last step, and what the water bears of them.
 Met meet_water(const StructuredBody& body, Index k);
+/// Of grains with their confined water, which has gone from what broke [kg/m^3].
+inline double density_of(const StructuredBody& body, Index k, const Met& met) {
+    const double cell = body.grid.cell();
+    return met.depth > 0.0 ? met.mass / (body.ground[k].open * cell * cell * met.depth) : body.density;
+}
 /// Drag and virtual mass between a node's columns and its water over a step. It brought the columns from `before` to
 /// `driven`. Returns their velocity. What both lose is the impulse times the mean slip.
 Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, const Vec2& driven, double dt,

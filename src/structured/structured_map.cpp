@@ -30,8 +30,8 @@ Standing columns_on(const StructuredBody& body, Index k) {
     const StructuredBody::Moved& node = body.moved[k];
     const double depth = StructuredMap::depth_of(body, k);
     if (!(depth > 0.0)) return {};
-    return {depth, body.density * StructuredMap::pressing(body, k) * depth, body.density * depth,
-            Vec2(node.vx, node.vy)};
+    const double density = StructuredMap::density_of(body, k);
+    return {depth, density * StructuredMap::pressing(body, k) * depth, density * depth, Vec2(node.vx, node.vy)};
 }
 
 /// With the water: velocities are those of both masses together.
@@ -40,7 +40,7 @@ Standing with_water(const Standing& columns, const WaterBody& water, double dens
     if (!(h > 0.0)) return columns;
     const double inertia = density * h;
     const Vec2 v = h > water.film ? Vec2(Vec2(water.now.qx[k], water.now.qy[k]) / h) : Vec2(0, 0);
-    return {columns.depth + h, columns.pressure + density * water.normal_gravity[k] * h, columns.inertia + inertia,
+    return {columns.depth + h, columns.pressure + density * water.pressing(k, v) * h, columns.inertia + inertia,
             (columns.inertia * columns.velocity + inertia * v) / (columns.inertia + inertia)};
 }
 
@@ -102,6 +102,11 @@ double StructuredMap::pressing(const StructuredBody& body, Index k) {
     if (!(body.node_mass[k] > 0.0)) return body.ground[k].across;  // parts of columns around, without a velocity
     const double borne = body.water ? meet_water(body, k).support : 0.0;
     return body.moved[k].normal_gravity + borne * body.ground[k].across;
+}
+
+double StructuredMap::density_of(const StructuredBody& body, Index k) {
+    if (!body.water || !(body.node_mass[k] > 0.0)) return body.density;
+    return frana::density_of(body, k, meet_water(body, k));
 }
 
 bool StructuredMap::is_in_reach(const StructuredBody& body, Index i, Index j) {

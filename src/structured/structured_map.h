@@ -32,6 +32,8 @@ public:
     /// Gravity by which a node's columns press on the bed and on the water that bears a part of them [m/s^2]. It
     /// holds on a bend of the bed too.
     static double pressing(const StructuredBody& body, Index k);
+    /// Of a node's columns [kg/m^3]: what breaks loses its confined water.
+    static double density_of(const StructuredBody& body, Index k);
     /// Whether the node is near material: elsewhere the body's nodes are of another time.
     static bool is_in_reach(const StructuredBody& body, Index i, Index j);
     /// Depth and velocity between the nodes, bilinear; beyond them the nearest. No elevation.

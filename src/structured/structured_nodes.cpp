@@ -36,6 +36,7 @@ struct DrivenOf {
     Real mass, across, depth;
     FlatOf<Real> before, driven;
     Real law_depth;         ///< for friction: without its 2-cell wave where the surface has none either [m]
+    double density;         ///< of what is there [kg/m^3]
     FlatOf<Real> beyond{};  ///< of what drove it, by earth pressure that is not hydrostatic [m/s]
 };
 
@@ -94,8 +95,8 @@ template <class Real, class Law>
     const StructuredBody& body = step.body;
     TallyOf<Real>& tally = step.of(Real{});
     const FlatOf<Real> free = body.obstacles.empty() ? node.driven : stopped(body, k, node.driven);
-    const FlatOf<Real> left =
-        braked(step.template law_at<Real>(k), body, ground, node.across, node.law_depth, node.before, free, step.times);
+    const FlatOf<Real> left = braked(step.template law_at<Real>(k), body, node.density, ground, node.across,
+                                     node.law_depth, node.before, free, step.times);
     tally.friction += node.mass * (left - free);
     // By the velocity that is left: what rests under stress and friction loses nothing.
     tally.braked += node.mass * ground.along(free - left, left);
@@ -151,7 +152,7 @@ template <class Real, class Law>
     const FlatOf<Real> weight = dt * ground.plane_gravity, before = stressed(body, k, mass, step.times.velocity_dt);
     const Real depth = dry_depth(body, k, mass, ground.open);
     const Real law_depth = body.grains ? read<Real>(&body.flow.nodes.law_depth[k]) : depth;
-    DrivenOf<Real> node{mass, ground.across, depth, before, before + weight, law_depth};
+    DrivenOf<Real> node{mass, ground.across, depth, before, before + weight, law_depth, body.density};
     TallyOf<Real>& tally = step.of(Real{});
     tally.weight += mass * weight;
     if (body.grains) {
@@ -179,7 +180,13 @@ void move_wet(NodeStep<Law>& step, Index k) {
     StructuredImpulses& impulse = step.tally.impulse;
     if (releases) impulse.water -= (mass - met.mass) * vec(brought(body, k, mass));
     const FlatOf<double> weight = dt * (ground.plane_gravity + flat(met.lift));
-    DrivenOf<double> node{met.mass, (1.0 - met.support) * ground.across, met.depth, before, before + weight, met.depth};
+    DrivenOf<double> node{met.mass,
+                          (1.0 - met.support) * ground.across,
+                          met.depth,
+                          before,
+                          before + weight,
+                          met.depth,
+                          density_of(body, k, met)};
     impulse.weight += met.mass * vec(weight);
     if (body.grains) {
         const GrainForceOf<double> grains = force_of_grains(step, k, ground, node, 1.0 - met.support);
@@ -190,7 +197,8 @@ void move_wet(NodeStep<Law>& step, Index k) {
     }
     if (has_water(body, k)) {  // drag uses what friction holds, and friction then what drag does
         const auto& law = step.template law_at<double>(k);
-        const FlatOf<double> held = braked(law, body, ground, node.across, met.depth, before, node.driven, {dt, 0.0});
+        const FlatOf<double> held =
+            braked(law, body, node.density, ground, node.across, met.depth, before, node.driven, {dt, 0.0});
         const Vec2 dragged = drag(body, k, met, vec(before), vec(held), dt, step.tally) - vec(held);
         node.driven += flat(dragged);
         impulse.water += met.mass * dragged;

@@ -48,6 +48,8 @@ struct WaterState {
 /// Curvature of the ground: second derivatives of its elevation [1/m].
 struct BedCurvature {
     double xx = 0.0, xy = 0.0, yy = 0.0;
+    /// v.H.v: vertical acceleration of what follows the ground with a velocity on the map [m/s^2].
+    double rise(const Vec2& v) const { return v.x() * v.x() * xx + 2.0 * v.x() * v.y() * xy + v.y() * v.y() * yy; }
 };
 
 struct WaterScene {
@@ -127,6 +129,11 @@ struct WaterFields {
 
 /// All that the kernels share.
 struct WaterBody {
+    /// Gravity by which water with a velocity on the map [m/s] presses on the ground [m/s^2]: less on a crest, and more in a
+    /// hollow.
+    double pressing(Index k, const Vec2& v) const {
+        return curvature ? normal_gravity[k] * std::max(0.0, 1.0 + curvature[k].rise(v) / gravity) : normal_gravity[k];
+    }
     explicit WaterBody(const WaterScene& scene);
     /// The highest of the lakes beyond the sides that the cell is at [m]. Far below all ground where there is none
     double highest_lake(Index i, Index j) const {

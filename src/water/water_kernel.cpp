@@ -315,15 +315,10 @@ Vec2 bed_slope(const WaterBody& body, Index k) {
            Vec2(body.bed[k + 1] - body.bed[k - 1], body.bed[k + body.grid.stride()] - body.bed[k - body.grid.stride()]);
 }
 
-/// v.H.v: vertical acceleration of what follows a bed that bends [m/s^2]
-double rise_of_path(const BedCurvature& of, const Vec2& v) {
-    return v.x() * v.x() * of.xx + 2.0 * v.x() * v.y() * of.xy + v.y() * v.y() * of.yy;
-}
-
 /// The force on water of depth h and velocity v over steep ground that fluxes leave out, over the density [m^2/s^2].
 /// THEORY, section 2. Where water would fly, its weight is none. `slope`: of the surface, as limited.
 Vec2 steep_force(const WaterBody& body, Index k, double h, const Vec2& v, const Vec2& slope) {
-    const double weight = std::max(0.0, body.gravity + rise_of_path(body.curvature[k], v));
+    const double weight = std::max(0.0, body.gravity + body.curvature[k].rise(v));
     const double climbs = std::max(0.0, bed_slope(body, k).dot(slope));
     return h * (body.normal_gravity[k] - weight / (1.0 + climbs)) * slope;
 }
@@ -421,7 +416,7 @@ BedState seen_by_law(const WaterBody& body, Index k, double h, const Vec2& direc
     const double cosine = body.steep ? std::sqrt(body.normal_gravity[k] / body.gravity) : 1.0;
     const double along = body.steep ? direction.dot(bed_slope(body, k)) : 0.0, kappa = std::sqrt(1.0 + along * along);
     double weight = body.gravity;
-    if (body.curvature) weight = std::max(0.0, weight + rise_of_path(body.curvature[k], speed * direction));
+    if (body.curvature) weight = std::max(0.0, weight + body.curvature[k].rise(speed * direction));
     return {weight * cosine / kappa, std::max(h * cosine, 1e-9), kappa, cosine, body.gravity, body.density};
 }
 

@@ -143,10 +143,12 @@ void measure_runs(ConvergenceStudy& study, const Raster& bed) {
     study.footprint_depth = finest.record["results"].at("footprint_depth").get<double>();
     study.title = finest.record.value("title", "");
     const Path path = path_of(finest, bed, study.remarks);
+    bool particles = false;
     for (const StudiedRun& run : study.runs) {
         const RunFiles files = read_run(run.folder);
         study.figures.push_back(figures_of(files, finest, path, study.footprint_depth));
         study.ends.push_back(files.record["exit_reason"].get<std::string>());
+        particles = particles || files.record["particle_steps"].get<double>() > 0.0;
     }
     for (Variation& varied : study.variations) {
         for (const fs::path& folder : varied.folders)
@@ -154,7 +156,7 @@ void measure_runs(ConvergenceStudy& study, const Raster& bed) {
         varied.sentence = spread_sentence(varied.key, varied.values, varied.figures, study.rule);
     }
     const double across = study.figures.back().cells_across, cell = study.figures.back().cell;
-    const std::string narrow = width_remark(across * cell, cell);
+    const std::string narrow = width_remark(across * cell, cell, particles);
     if (!narrow.empty()) study.remarks.push_back(fmt::format("on the finest cell of {:g} m {}", cell, narrow));
     remark_on_ends(study);
     remark_on_path(study);

@@ -44,8 +44,7 @@ std::string heading(const RunRecord& r) {
 std::string left_text(const RunRecord& r) {
     if (r.of_water_alone()) return fmt::format("{:.6g} m3 of water", r.extras.water->left);
     if (!r.extras.water) return fmt::format("{:.6g} m3", r.summary.last.mass_left / r.density);
-    return fmt::format("{:.6g} m3 of grains and {:.6g} m3 of water", r.extras.water->solids_left / r.density,
-                       r.extras.water->left);
+    return fmt::format("{:.6g} m3 of grains and {:.6g} m3 of water", r.extras.water->solids_left, r.extras.water->left);
 }
 
 /// "took 12 300 m3 (growth 1.8), 0.7 m deep at most, budget 3e-16": volumes as they are in the flow. What it grew from is

@@ -64,7 +64,7 @@ double largest(const std::vector<ProductRaster>& rasters, const char* name) {
 /// The flow's width, and a remark where too few cells lie across it.
 void note_width(RunRecord& record, const Raster& covered) {
     record.flow_width = flow_width(covered, record.footprint_depth);
-    const std::string remark = width_remark(record.flow_width, record.grid.cell);
+    const std::string remark = width_remark(record.flow_width, record.grid.cell, !record.of_water_alone());
     if (!remark.empty()) record.warnings.push_back(remark);
 }
 
