@@ -256,11 +256,11 @@ std::optional<WaterPhase> read_water(const CaseFile& file, const GisReader& read
     WaterPhase water;
     water.share = scene.structure ? number(file, "share") : 1.0;
     if (file.given("water.level")) water.level = number(file, "level");
+    water.sides = read_sides(file, scene);
     bool lies = true;
     if (file.given("water.level_within"))
         lies = problems.attempt(file.place("water.level_within"), [&] { read_lake(file, reader, scene, water); });
     if (water.level && lies) remark_on_lake(file, water, scene);
-    water.sides = read_sides(file, scene);
     for (const auto& [key, to] : {std::pair<const char*, Raster*>{"water.rain", &water.rain},
                                   std::pair<const char*, Raster*>{"water.infiltration", &water.infiltration}})
         problems.attempt(file.place(key), [&, key = key, to = to] { *to = rate_on_nodes(file, reader, key, scene); });
