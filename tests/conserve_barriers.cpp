@@ -524,6 +524,41 @@ TEST_CASE("Depth before a wall is that of what stands there, whatever the wall t
     }
 }
 
+// Columns have a ramp of two cells before a barrier. Points come as far as its face, over the ground.
+TEST_CASE("In a 3D stage places and nodes show the ground that points stand on, before, after and beside the window",
+          "[barrier]") {
+    Scene scene = channel(4.0);
+    const GridGeometry& g = scene.bed.geometry;  // cells of 0.5 m
+    scene.barriers[0].outline = rectangle_of(10.0, -1.0, 12.0, 5.0);
+    scene.solid->from = 0.3;
+    scene.solid->until = 0.8;
+    scene.solid->window = {6, 0, 22, 8};  // to x = 11, in the barrier
+    scene.solid->closed = {false, true, false, true};
+    StagedRun run(scene);
+    const auto check_at = [&](double x, double ground) {
+        CAPTURE(run.status().time, x);
+        Frame frame = run.frame();
+        const auto k = static_cast<std::size_t>(4 * g.nx + std::lround((x - g.x0) / g.cell));
+        const double depth = frame.node("depth")->data[k];
+        CHECK(frame.node("elevation")->data[k] == Approx(ground).epsilon(1e-12));
+        CHECK(frame.node("surface")->data[k] == Approx(ground + depth).epsilon(1e-12));
+        CHECK(run.at({x, 2.0}).elevation == Approx(ground).epsilon(1e-12));
+    };
+    const auto of_columns = [&](double x) { return run.columns().at({x, 2.0}).elevation; };
+    run_to(run, 0.2);
+    for (const double x : {9.5, 10.0, 10.5}) check_at(x, of_columns(x));
+    run_to(run, 0.7);
+    CHECK(of_columns(9.5) > 2.5);  // the ramp
+    for (const double x : {8.0, 9.0, 9.5, 10.0}) check_at(x, 2.0);
+    for (const double x : {11.0}) check_at(x, 6.0);  // the barrier fills what this node stands for
+    CHECK(run.at({9.8, 2.0}).elevation == Approx(2.0).epsilon(1e-12));
+    for (const double x : {11.5, 12.0, 12.5}) check_at(x, of_columns(x));  // beyond the window
+    CHECK(of_columns(12.5) > 2.5);
+    run_to(run, 0.9);
+    REQUIRE(run.points()->status().points == 0);
+    for (const double x : {9.5, 10.0, 10.5}) check_at(x, of_columns(x));
+}
+
 // A lake at rest over a low box whose faces stand on nodes, between them, and on a slope: a node on a face is as deep
 // as what stands before it. Bilinear shares of points side by side, as many as parts, are exact. On a slope tops cut
 // through points: half a point at most, which counts up to twice, 4 % of the depth.

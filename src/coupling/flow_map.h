@@ -41,6 +41,8 @@ public:
     double cosine(Index k) const {
         return 1.0 / std::sqrt(steepening_[static_cast<std::size_t>(k)]);
     }  ///< of the slope
+    /// Of the barrier that fills a node, which its depth stands on [m]; NaN where it stands on the bed.
+    double top_below(Index k) const { return open_.top_below(k); }
     /// Columns that are adjacent to the points from now on: mean_at() counts them too.
     void set_adjacent(const FlowColumns& columns);
     /// Of the flow between the nodes, bilinear; beyond them the nearest. The speed is that of the common momentum, up and down

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "coupling/barriers.h"
 #include "coupling/solid_scene.h"
@@ -101,14 +102,15 @@ struct Solid {
     }
 };
 
+/// 0 where it is next to nothing: points there are on top.
 double open_share(const Taken& taken) {
-    constexpr double kNothing = 0.05;  // points there are on top
+    constexpr double kNothing = 0.05;
     double all = 0.0, open = 0.0;
     for (int part = 0; part < kAllParts; ++part) {
         all += weight_of(part);
         if (!taken[part]) open += weight_of(part);
     }
-    return open < kNothing * all ? 1.0 : open / all;
+    return open < kNothing * all ? 0.0 : open / all;
 }
 
 /// Up to where barriers take a node's parts [m].
@@ -154,7 +156,17 @@ OpenShares::OpenShares(const Scene& scene) : at_bed_(static_cast<std::size_t>(sc
         for (const Barrier& barrier : scene.barriers) solids.emplace_back(barrier, scene);
     for (const Solid& solid : solids)
         room.mark(solid.corners, [&](const Vec2& place) { return std::isfinite(solid.top_at(place, scene.bed)); });
-    for (const auto& [node, taken] : room.by_node()) at_bed_[static_cast<std::size_t>(node)] = open_share(taken);
+    std::set<Index> filled;
+    for (const auto& [node, taken] : room.by_node()) {
+        const double open = open_share(taken);
+        at_bed_[static_cast<std::size_t>(node)] = open > 0.0 ? open : 1.0;
+        if (!(open > 0.0)) filled.insert(node);
+    }
+    for (const Solid& solid : solids)
+        for_each_node_around(solid.corners, scene.bed.geometry, [&](Index node, const Vec2& at) {
+            const double top = filled.count(node) ? solid.top_at(at, scene.bed) : -INFINITY;
+            if (std::isfinite(top)) top_below_[node] = std::fmax(this->top_below(node), top);
+        });
     const std::map<Index, Tops> tops = tops_of(solids, scene, at_bed_);
     if (!tops.empty()) begin_.assign(at_bed_.size() + 1, 0);
     for (const auto& [node, own] : tops) {

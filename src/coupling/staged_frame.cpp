@@ -80,7 +80,7 @@ void StagedRun::node_fields(Frame& frame) {
     const Index count = map_.grid().size();
     std::vector<Field> columns = std::move(frame.nodes);
     frame.nodes.clear();
-    double* depth = nullptr;
+    double *depth = nullptr, *elevation = nullptr, *surface = nullptr;
     const double* depth_of_columns = nullptr;
     for (const Field& field : columns) {
         double* const values = store_.raw(frame.nodes, field.name, field.unit, field.components, count);
@@ -90,6 +90,8 @@ void StagedRun::node_fields(Frame& frame) {
             each_node(values, count, [&](Index k) { return std::max(values[k], map_.peak(k).*peak); });
         };
         if (field.name == "depth") depth = values, depth_of_columns = field.data;
+        if (field.name == "elevation") elevation = values;
+        if (field.name == "surface") surface = values;
         if (field.name == "depth" || field.name == "surface") more([&](Index k) { return map_.depth(k); });
         if (field.name == "thickness") more([&](Index k) { return map_.depth(k) * map_.cosine(k); });
         if (field.name == "pressure") more([&](Index k) { return map_.pressure(k); });
@@ -115,6 +117,15 @@ void StagedRun::node_fields(Frame& frame) {
                 return all > 0.0 ? (before * values[k] + (all - before) * map_.velocity(k).norm()) / all : 0.0;
             });
     }
+    if (ended_) return;
+    const std::array<Index, 4>& w = scene_.solid->window;
+    for (Index j = w[1]; j <= w[3]; ++j)
+        for (Index i = w[0]; i <= w[2]; ++i) {
+            const Index k = j * map_.grid().nx + i;
+            if (std::isnan(elevation[k])) continue;
+            elevation[k] = ground_at(i, j);
+            surface[k] = elevation[k] + depth[k];
+        }
 }
 
 }  // namespace frana

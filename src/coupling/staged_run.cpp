@@ -12,6 +12,7 @@
 #include "coupling/bed_friction.h"
 #include "coupling/start_pressure.h"
 #include "terrain/part_of.h"
+#include "terrain/places.h"
 
 namespace frana {
 
@@ -318,6 +319,16 @@ bool StagedRun::may_rest() const {
     return points_ && (!scene_.solid->until || (ended_ && columns_->status().dt > 0.0));
 }
 
+/// What depth at a node stands on [m]. In the window of points it is their ground, or the top of a barrier that leaves no
+/// room beside it. Columns have barriers as ground, with a ramp before each: the ground elsewhere.
+double StagedRun::ground_at(Index i, Index j) const {
+    const std::array<Index, 4>& w = scene_.solid->window;
+    const double of_columns = columns_->flow().bed.z[columns_->flow().grid.at(i, j)];
+    if (!points_ || ended_ || i < w[0] || j < w[1] || i > w[2] || j > w[3]) return of_columns;
+    const double top = map_.top_below(j * scene_.bed.geometry.nx + i), bed = scene_.bed.at(i, j);
+    return std::isfinite(top) ? top : std::isfinite(bed) ? bed : of_columns;
+}
+
 Sample StagedRun::at(const Vec2& point) const {
     Sample sample = columns_->at(point);
     if (!points_) return sample;
@@ -328,6 +339,11 @@ Sample StagedRun::at(const Vec2& point) const {
         sample.speed = (sample.depth * sample.speed + more.depth * more.speed) / depth;
     }
     sample.depth = depth;
+    sample.elevation = 0.0;
+    const NodeSquare around(scene_.bed.geometry, point);
+    for (Index n = 0; n < 4; ++n)
+        if (const double w = around.weight(n); w > 0.0)
+            sample.elevation += w * ground_at(around.node(n).i, around.node(n).j);
     return sample;
 }
 

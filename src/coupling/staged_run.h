@@ -112,6 +112,7 @@ private:
     void serialize_returning(Archive& archive);
     void particle_fields(Frame& frame);
     void node_fields(Frame& frame);
+    double ground_at(Index i, Index j) const;
 
     Scene scene_;
     Footings footings_;  ///< what barriers stand on
