@@ -601,6 +601,51 @@ TEST_CASE("Depth on the crest of a barrier is that of what stands there, next to
     }
 }
 
+// Columns of points of 0.125 m, 3 m of them, over a slope: as high as their volume, or pressed together into a third.
+TEST_CASE("Where points lie in one another, the map's depth is more than they reach, and the run says so", "[stages]") {
+    constexpr double kPart = 0.125, kDepth = 3.0;
+    const auto bed = [](double x, double) { return 10.0 + 0.25 * x; };
+    Scene scene = scene_on(15, 12, 1.0, bed);
+    scene.density = 1000.0;
+    scene.solid = SolidStage{};
+    scene.solid->window = {0, 0, 14, 11};
+    const auto points = [&](double squeeze) {
+        SolidScene space;
+        space.density = scene.density;
+        space.law = solid::Fluid{1e6, 0.0};
+        space.grid = {Vec3(-1, -1, 9), 0.5, {35, 29, 24}};
+        for (double x = 4.0 + 0.5 * kPart; x < 10.0; x += kPart)
+            for (double y = 4.0 + 0.5 * kPart; y < 8.0; y += kPart)
+                for (double above = 0.5 * kPart; above < kDepth; above += kPart)
+                    space.points.add({x, y, bed(x, y) + squeeze * above}, Vec3::Zero(),
+                                     scene.density * std::pow(kPart, 3), 0.0);
+        return Mpm3d(space);
+    };
+    FlowMap map(scene);
+    map.sample(points(1.0), 1.0);
+    CHECK(!map.remark());
+    map.sample(points(0.75), 1.5);  // a third more: compressed, or rough
+    CHECK(!map.remark());
+    const auto check = [](const FlowMap& seen) {
+        CHECK(seen.piled().depth == Approx(kDepth).epsilon(1e-9));
+        CHECK(seen.piled().height == Approx((kDepth - 0.5 * kPart) / 3.0 + 0.5 * kPart).epsilon(1e-9));
+        CHECK(seen.piled().time == 2.0);
+        CHECK((seen.piled().x >= 5.0 && seen.piled().x <= 9.0 && seen.piled().y >= 5.0 && seen.piled().y <= 7.0));
+        REQUIRE(seen.remark().has_value());
+        CHECK_THAT(*seen.remark(),
+                   Catch::Contains("t = 2 s their volume makes 3 m of depth") && Catch::Contains("reaches 1.04 m"));
+    };
+    map.sample(points(1.0 / 3.0), 2.0);
+    check(map);
+    map.sample(points(1.0), 3.0);  // it stays said
+    check(map);
+    MemoryArchive saved;
+    map.serialize(saved);
+    FlowMap again(scene);
+    again.serialize(saved.rewind());
+    check(again);
+}
+
 TEST_CASE("Where points are no more, a barrier's table has no force, and none is the largest of what never came",
           "[barrier]") {
     const FreshFolder scratch;

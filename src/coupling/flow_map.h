@@ -2,6 +2,8 @@
 // 3D points seen from above: depth and velocity on the nodes of the terrain, and their peaks.
 #include <array>
 #include <cmath>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "convert/flow_columns.h"
@@ -59,6 +61,17 @@ public:
     const NodePeak& peak(Index k) const { return peaks_[static_cast<std::size_t>(k)]; }
 
     const FlowExtent& extent() const { return extent_; }
+    /// A node whose depth is more than half again what its points reach up to: they lie in one another there.
+    struct Piled {
+        double depth = 0.0;       ///< of the node, 0: none ever was so [m]
+        double height = 0.0;      ///< of the highest point around above the bed, with half its size [m]
+        double x = 0.0, y = 0.0;  ///< of the node [m]
+        double time = 0.0;        ///< [s]
+    };
+    /// The deepest of all samples.
+    const Piled& piled() const { return piled_; }
+    /// What a run says of it.
+    std::optional<std::string> remark() const;
     double footprint_depth() const { return footprint_depth_; }  ///< [m]
     /// Nodes that are covered since a time at most, and where material is faster than `speed` (MovingMass::fronts).
     Index fronts(double since, double speed) const;
@@ -66,6 +79,8 @@ public:
 
 private:
     void note_peaks(double time);
+    void note_piled(Index k, double time);
+    double height_above_bed(const Vec3& place) const;
 
     GridGeometry grid_;
     double density_, gravity_, footprint_depth_;
@@ -73,7 +88,10 @@ private:
     OpenShares open_;                 ///< of the nodes' cells
     std::vector<double> areas_;       ///< of the nodes' cells, without what walls and barriers take of them [m2]
     std::vector<double> steepening_;  ///< 1 + |grad Z|^2 at the nodes
+    std::vector<double> ground_;      ///< of the points at the nodes [m]
     std::vector<Node> nodes_;
+    std::vector<double> heights_;  ///< of the highest point around each node above the bed, with half its size [m]
+    Piled piled_;
     std::vector<Node> adjacent_;          ///< of the adjacent columns; empty: none were ever set
     std::vector<Index> adjacent_places_;  ///< nodes that have any of that
     std::vector<NodePeak> peaks_;

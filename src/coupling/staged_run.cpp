@@ -468,6 +468,7 @@ std::vector<std::string> StagedRun::remarks() const {
                     gone > kRoundOff * s.mass_left ? gone / density : 0.0, start_.top));
     remark_law(remarks);
     remark_cells(remarks);
+    if (const auto piled = map_.remark()) remarks.push_back(*piled);
     const bool fluid = std::visit([](const auto& law) { return law.kAverages; }, scene_.solid->law);
     if (fluid || scene_.solid->of_bed) {
         remarks.push_back(
