@@ -601,6 +601,30 @@ TEST_CASE("Depth on the crest of a barrier is that of what stands there, next to
     }
 }
 
+// Points go on for a cell and a half beyond the outer nodes. Their pixels end at half a cell.
+TEST_CASE("Depth at the terrain's open edge is that of what stands on its pixels", "[stages]") {
+    constexpr double kPart = 0.125, kDepth = 1.0;
+    Scene scene = scene_on(9, 7, 1.0, [](double, double) { return 2.0; });
+    scene.density = 1000.0;
+    scene.solid = SolidStage{};
+    scene.solid->window = {0, 0, 8, 6};
+    SolidScene space;
+    space.density = scene.density;
+    space.law = solid::Fluid{1e6, 0.0};
+    space.grid = {Vec3(-2, -2, 1), 0.5, {27, 23, 8}};
+    for (double x = -1.5 + 0.5 * kPart; x < 9.5; x += kPart)
+        for (double y = -1.5 + 0.5 * kPart; y < 7.5; y += kPart)
+            for (double above = 0.5 * kPart; above < kDepth; above += kPart)
+                space.points.add({x, y, 2.0 + above}, Vec3::Zero(), scene.density * std::pow(kPart, 3), 0.0);
+    FlowMap map(scene);
+    map.sample(Mpm3d(space), 0.0);
+    for (Index k = 0; k < scene.bed.geometry.size(); ++k) {
+        CAPTURE(k);
+        CHECK(map.depth(k) == Approx(kDepth).epsilon(1e-9));
+    }
+    CHECK(!map.remark());
+}
+
 // Columns of points of 0.125 m, 3 m of them, over a slope: as high as their volume, or pressed together into a third.
 TEST_CASE("Where points lie in one another, the map's depth is more than they reach, and the run says so", "[stages]") {
     constexpr double kPart = 0.125, kDepth = 3.0;

@@ -98,12 +98,20 @@ void FlowMap::set_adjacent(const FlowColumns& columns) {
     }
 }
 
+/// Within the pixels of the terrain. Points leave it over open sides a cell farther on.
+bool FlowMap::on_pixels(const Vec3& place) const {
+    const double u = (place[0] - grid_.x0) / grid_.cell, v = (place[1] - grid_.y0) / grid_.cell;
+    return u >= -0.5 && v >= -0.5 && u <= static_cast<double>(grid_.nx) - 0.5 &&
+           v <= static_cast<double>(grid_.ny) - 0.5;
+}
+
 /// One thread: it takes a hundredth of the steps between two samples.
 void FlowMap::sample(const Mpm3d& flow, double time) {
     std::fill(nodes_.begin(), nodes_.end(), Node{});
     std::fill(heights_.begin(), heights_.end(), 0.0);
     for (Index p = 0; p < flow.body().points.count(); ++p) {
         const Vec3 x = flow.position(p);
+        if (!on_pixels(x)) continue;
         const double mass = flow.body().points.mass[p];
         const Vec3 momentum = mass * flow.velocity(p);
         const double height = height_above_bed(x) + 0.5 * std::cbrt(mass / density_);

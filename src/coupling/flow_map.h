@@ -80,6 +80,7 @@ public:
 private:
     void note_peaks(double time);
     void note_piled(Index k, double time);
+    bool on_pixels(const Vec3& place) const;
     double height_above_bed(const Vec3& place) const;
 
     GridGeometry grid_;
