@@ -509,7 +509,7 @@ TEST_CASE("Depth before a wall is that of what stands there, whatever the wall t
     const GridGeometry& g = scene.bed.geometry;  // cells of 0.5 m
     for (const double face : {10.0, 9.75}) {
         scene.barriers[0].outline = rectangle_of(face, -1.0, 12.0, 5.0);
-        const OpenShares shares(scene);
+        const OpenShares shares(scene, NodeBox::all(g));
         const std::vector<double>& open = shares.at_bed();
         const auto at = [&](double x) {
             return open[static_cast<std::size_t>(4 * g.nx + std::lround((x - g.x0) / g.cell))];

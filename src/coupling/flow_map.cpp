@@ -5,27 +5,30 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/solid_scene.h"
+#include "terrain/part_of.h"
 #include "terrain/places.h"
 
 namespace frana {
 
 FlowMap::FlowMap(const Scene& scene)
     : grid_(scene.bed.geometry),
+      box_(nodes_of_points(scene)),
       density_(scene.density),
       gravity_(scene.gravity),
       footprint_depth_(scene.output.footprint_depth),
-      open_(scene),
-      ground_(scene.bed.values),
-      nodes_(static_cast<std::size_t>(grid_.size())),
+      open_(scene, box_),
+      ground_(part_of(scene.bed, box_).values),
+      nodes_(ground_.size()),
       heights_(nodes_.size()),
-      peaks_(static_cast<std::size_t>(grid_.size())) {
-    const std::vector<double>& open = open_.at_bed();
+      peaks_(nodes_.size()) {
     areas_.reserve(nodes_.size());
     steepening_.reserve(nodes_.size());
-    for (Index j = 0; j < grid_.ny; ++j)
-        for (Index i = 0; i < grid_.nx; ++i)
-            areas_.push_back(grid_.cell * grid_.cell * open[static_cast<std::size_t>(j * grid_.nx + i)]),
-                steepening_.push_back(1.0 + bed_gradient(scene.bed, grid_.x(i), grid_.y(j)).squaredNorm());
+    for (const double open : open_.at_bed()) {
+        const Vec2 place = place_of(static_cast<Index>(areas_.size()));
+        areas_.push_back(grid_.cell * grid_.cell * open);
+        steepening_.push_back(1.0 + bed_gradient(scene.bed, place.x(), place.y()).squaredNorm());
+    }
     double volume = 0.0;
     for (std::size_t p = 0; p < scene.particles.x.size(); ++p) {
         centre_ += scene.particles.volume[p] * Vec2(scene.particles.x[p], scene.particles.y[p]);
@@ -38,23 +41,21 @@ double FlowMap::pressure(Index k) const {
     return density_ * gravity_ * depth(k) / steepening_[static_cast<std::size_t>(k)];
 }
 
-namespace {
-
-/// Calls body(node, weight) for the four nodes around a map point. Two loops: by NodeSquare::weight a step took longer.
+/// Calls body(node, weight) for those of the four nodes around a map point that the map has. Two loops: by
+/// NodeSquare::weight a step took longer.
 template <class Body>
-void for_each_around(const GridGeometry& g, double x, double y, Body&& body) {
-    const NodeSquare at(g, x, y);
-    const Index first = at.j * g.nx + at.i;
+void FlowMap::for_each_around(double x, double y, Body&& body) const {
+    const NodeSquare at(grid_, x, y);
     for (Index b = 0; b < 2; ++b)
-        for (Index a = 0; a < 2; ++a) body(first + b * g.nx + a, (a ? at.s : 1.0 - at.s) * (b ? at.t : 1.0 - at.t));
+        for (Index a = 0; a < 2; ++a)
+            if (const Index k = number(at.i + a, at.j + b); k >= 0)
+                body(k, (a ? at.s : 1.0 - at.s) * (b ? at.t : 1.0 - at.t));
 }
-
-}  // namespace
 
 Sample FlowMap::at(const Vec2& point) const {
     Sample sample;
     Vec3 flux(0, 0, 0);
-    for_each_around(grid_, point.x(), point.y(), [&](Index k, double w) {
+    for_each_around(point.x(), point.y(), [&](Index k, double w) {
         sample.depth += w * depth(k);
         flux += w * depth(k) * velocity(k);
     });
@@ -67,7 +68,7 @@ Sample FlowMap::at(const Vec2& point) const {
 FlowMap::Mean FlowMap::mean_at(const Vec2& point) const {
     Mean mean;
     Vec3 flux(0, 0, 0);
-    for_each_around(grid_, point.x(), point.y(), [&](Index k, double w) {
+    for_each_around(point.x(), point.y(), [&](Index k, double w) {
         const auto at = static_cast<std::size_t>(k);
         Node all = nodes_[at];
         if (!adjacent_.empty()) all.mass += adjacent_[at].mass, all.momentum += adjacent_[at].momentum;
@@ -88,7 +89,7 @@ void FlowMap::set_adjacent(const FlowColumns& columns) {
         const Vec2 along(columns.vx[c], columns.vy[c]);
         const Vec3 velocity(along.x(), along.y(), along.dot(Vec2(columns.slope_x[c], columns.slope_y[c])));
         const double middle = columns.bed[c] + 0.5 * columns.depth[c];
-        for_each_around(grid_, columns.x[c], columns.y[c], [&](Index k, double share) {
+        for_each_around(columns.x[c], columns.y[c], [&](Index k, double share) {
             const double w = share * open_.narrowing(k, middle);
             Node& node = adjacent_[static_cast<std::size_t>(k)];
             if (node.mass == 0.0) adjacent_places_.push_back(k);
@@ -115,7 +116,7 @@ void FlowMap::sample(const Mpm3d& flow, double time) {
         const double mass = flow.body().points.mass[p];
         const Vec3 momentum = mass * flow.velocity(p);
         const double height = height_above_bed(x) + 0.5 * std::cbrt(mass / density_);
-        for_each_around(grid_, x[0], x[1], [&](Index k, double share) {
+        for_each_around(x[0], x[1], [&](Index k, double share) {
             const double w = share * open_.narrowing(k, x[2]);
             Node& node = nodes_[static_cast<std::size_t>(k)];
             node.mass += w * mass;
@@ -130,22 +131,21 @@ void FlowMap::sample(const Mpm3d& flow, double time) {
 /// Infinite where the bed is not known.
 double FlowMap::height_above_bed(const Vec3& place) const {
     double bed = 0.0;
-    for_each_around(grid_, place[0], place[1],
+    for_each_around(place[0], place[1],
                     [&](Index k, double share) { bed += share * ground_[static_cast<std::size_t>(k)]; });
     return std::isnan(bed) ? INFINITY : place[2] - bed;
 }
 
 void FlowMap::note_peaks(double time) {
     extent_ = {};
-    for (Index k = 0; k < grid_.size(); ++k) {
+    for (Index k = 0; k < static_cast<Index>(nodes_.size()); ++k) {
         if (!(depth(k) > 0.0)) continue;
         note_piled(k, time);
         const auto at = static_cast<std::size_t>(k);
         const double h = depth(k) + (adjacent_.empty() ? 0.0 : adjacent_[at].mass / (density_ * areas_[at]));
         const NodeState now{h, velocity(k).norm(), density_ * gravity_ * h / steepening_[at], density_};
         peaks_[static_cast<std::size_t>(k)].note(now, time, footprint_depth_);
-        extent_.note(now, footprint_depth_, areas_[static_cast<std::size_t>(k)],
-                     (Vec2(grid_.x(k % grid_.nx), grid_.y(k / grid_.nx)) - centre_).norm());
+        extent_.note(now, footprint_depth_, areas_[static_cast<std::size_t>(k)], (place_of(k) - centre_).norm());
     }
 }
 
@@ -153,7 +153,7 @@ void FlowMap::note_piled(Index k, double time) {
     constexpr double kTooMuch = 1.5;  // compression and drops make less
     const double h = depth(k), height = heights_[static_cast<std::size_t>(k)];
     if (h > kTooMuch * height && h > footprint_depth_ && h > piled_.depth)
-        piled_ = {h, height, grid_.x(k % grid_.nx), grid_.y(k / grid_.nx), time};
+        piled_ = {h, height, place_of(k).x(), place_of(k).y(), time};
 }
 
 std::optional<std::string> FlowMap::remark() const {
@@ -168,7 +168,7 @@ std::optional<std::string> FlowMap::remark() const {
 
 Index FlowMap::fronts(double since, double speed) const {
     Index count = 0;
-    for (Index k = 0; k < grid_.size(); ++k) {
+    for (Index k = 0; k < static_cast<Index>(peaks_.size()); ++k) {
         const NodePeak& peak = peaks_[static_cast<std::size_t>(k)];
         count += peak.covered(footprint_depth_) && peak.arrival >= since && velocity(k).norm() > speed;
     }

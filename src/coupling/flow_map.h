@@ -16,6 +16,7 @@
 
 namespace frana {
 
+/// On the nodes that points can give to (nodes_of_points()), numbered row after row.
 class FlowMap {
 public:
     /// A node's material: what the points around it give it, bilinear. What stands above a barrier's top, where the node
@@ -29,7 +30,12 @@ public:
     /// Takes the points as they are now, and the peaks. Same bits for any number of threads.
     void sample(const Mpm3d& flow, double time);
 
-    const GridGeometry& grid() const { return grid_; }
+    const NodeBox& nodes() const { return box_; }
+    /// The number of a node of the terrain; -1 where the map has none.
+    Index number(Index i, Index j) const {
+        const Index a = i - box_.i0, b = j - box_.j0;
+        return a < 0 || b < 0 || a >= box_.nx || b >= box_.ny ? -1 : b * box_.nx + a;
+    }
     /// Volume without stress over the area that is open at its height [m]. A pile of air and drops is as deep as if it had settled.
     double depth(Index k) const {
         return nodes_[static_cast<std::size_t>(k)].mass / (density_ * areas_[static_cast<std::size_t>(k)]);
@@ -82,8 +88,12 @@ private:
     void note_piled(Index k, double time);
     bool on_pixels(const Vec3& place) const;
     double height_above_bed(const Vec3& place) const;
+    Vec2 place_of(Index k) const { return {grid_.x(box_.i0 + k % box_.nx), grid_.y(box_.j0 + k / box_.nx)}; }
+    template <class Body>
+    void for_each_around(double x, double y, Body&& body) const;
 
-    GridGeometry grid_;
+    GridGeometry grid_;  ///< of the terrain
+    NodeBox box_;
     double density_, gravity_, footprint_depth_;
     Vec2 centre_{0, 0};               ///< of the release [m]
     OpenShares open_;                 ///< of the nodes' cells

@@ -13,8 +13,9 @@ namespace frana {
 /// of the stage's window, at any height.
 class OpenShares {
 public:
-    explicit OpenShares(const Scene& scene);
-    /// On the bed, row after row. 1 where next to nothing is left: what is found there stands on top.
+    /// Of the nodes of a box of the terrain, which have its numbers.
+    OpenShares(const Scene& scene, const NodeBox& box);
+    /// On the bed, row after row of the box. 1 where next to nothing is left: what is found there stands on top.
     const std::vector<double>& at_bed() const { return at_bed_; }
     /// The share on the bed over the one at an elevation: below 1 above the top of a barrier.
     double narrowing(Index node, double z) const {

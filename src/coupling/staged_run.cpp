@@ -319,13 +319,18 @@ bool StagedRun::may_rest() const {
     return points_ && (!scene_.solid->until || (ended_ && columns_->status().dt > 0.0));
 }
 
+/// Whether it is points that stand on a node.
+bool StagedRun::stands_in_window(Index i, Index j) const {
+    const std::array<Index, 4>& w = scene_.solid->window;
+    return points_ && !ended_ && i >= w[0] && j >= w[1] && i <= w[2] && j <= w[3];
+}
+
 /// What depth at a node stands on [m]. In the window of points it is their ground, or the top of a barrier that leaves no
 /// room beside it. Columns have barriers as ground, with a ramp before each: the ground elsewhere.
 double StagedRun::ground_at(Index i, Index j) const {
-    const std::array<Index, 4>& w = scene_.solid->window;
     const double of_columns = columns_->flow().bed.z[columns_->flow().grid.at(i, j)];
-    if (!points_ || ended_ || i < w[0] || j < w[1] || i > w[2] || j > w[3]) return of_columns;
-    const double top = map_.top_below(j * scene_.bed.geometry.nx + i), bed = scene_.bed.at(i, j);
+    if (!stands_in_window(i, j)) return of_columns;
+    const double top = map_.top_below(map_.number(i, j)), bed = scene_.bed.at(i, j);
     return std::isfinite(top) ? top : std::isfinite(bed) ? bed : of_columns;
 }
 
@@ -374,11 +379,11 @@ void StagedRun::remark_law(std::vector<std::string>& remarks) const {
 double StagedRun::deepest_at(const Surface& barrier) const {
     const GridGeometry& g = scene_.bed.geometry;
     const auto [low, high] = box_around(barrier);
-    const NodeBox box = common(widened(cells_of({low.head<2>(), high.head<2>()}, g), 1), NodeBox::all(g));
+    const NodeBox box = common(widened(cells_of({low.head<2>(), high.head<2>()}, g), 1), map_.nodes());
     double deepest = 0.0;
     for (Index j = box.j0; j < box.j0 + box.ny; ++j)
         for (Index i = box.i0; i < box.i0 + box.nx; ++i) {
-            const double depth = map_.peak(j * g.nx + i).depth,
+            const double depth = map_.peak(map_.number(i, j)).depth,
                          distance =
                              depth > deepest ? contact(barrier, {g.x(i), g.y(j), scene_.bed.at(i, j)}).distance : -1.0;
             if (distance >= 0.0 && distance <= g.cell) deepest = depth;
