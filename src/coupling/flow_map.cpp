@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "coupling/solid_scene.h"
+#include "scene/stage_reach.h"
 #include "terrain/part_of.h"
 #include "terrain/places.h"
 

@@ -104,15 +104,6 @@ std::vector<std::uint8_t> nodes_at_edge(const Scene& scene) {
     return marked(scene.bed.geometry, box);
 }
 
-NodeBox nodes_of_points(const Scene& scene) {
-    constexpr Index kStencil = 2;  // of what stands at the outermost of these nodes
-    const NodeBox all = NodeBox::all(scene.bed.geometry);
-    if (!scene.solid) return all;
-    const std::array<Index, 4>& w = scene.solid->window;
-    const Index more = reach_around(*scene.solid, scene.bed.geometry.cell) + kStencil;
-    return common(widened({w[0], w[1], w[2] - w[0] + 1, w[3] - w[1] + 1}, more), all);
-}
-
 namespace {
 
 /// Of a column along the bed [m^2/s^2].

@@ -46,8 +46,4 @@ std::vector<std::uint8_t> nodes_in_window(const Scene& scene);
 /// may come. They include the reach of their nodes and of what stands there.
 std::vector<std::uint8_t> nodes_at_edge(const Scene& scene);
 
-/// All nodes that points, and columns that they feel, can give anything to: the window and its rim. Without a stage the
-/// whole terrain.
-NodeBox nodes_of_points(const Scene& scene);
-
 }  // namespace frana
