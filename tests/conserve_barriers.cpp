@@ -601,6 +601,34 @@ TEST_CASE("Depth on the crest of a barrier is that of what stands there, next to
     }
 }
 
+// The terrain's rows lie one behind the other: what is beyond the east end of one is not at the west of the next.
+TEST_CASE("Points beyond the terrain's edge become columns there, whatever barrier stands at the other edge",
+          "[barrier][stages]") {
+    Scene scene = channel(4.0);
+    scene.sides = Sides::open;
+    scene.barriers[0].outline = rectangle_of(-1.0, -1.0, 1.0, 5.0);
+    fill(scene, [](double x, double) { return x > 8 && x < 14 ? 1.0 : 0.0; });
+    scene.particles.vx.assign(scene.particles.x.size(), 5.0);
+    scene.solid->closed = {};
+    scene.solid->until = 0.25;
+    const double edge = scene.bed.geometry.x_max();
+    StagedRun run(scene);
+    run_to(run, 0.249);
+    const auto beyond = [&] {
+        Frame frame = run.frame();
+        const Field &place = *frame.particle("position"), &mass = *frame.particle("mass");
+        double sum = 0.0;
+        for (Index p = 0; p < mass.count; ++p)
+            if (place.data[3 * p] > edge) sum += mass.data[p];
+        return sum;
+    };
+    const double before = beyond();
+    REQUIRE(before > 0.01 * run.status().mass);
+    run_to(run, 0.25);
+    REQUIRE(run.points()->status().points == 0);
+    CHECK(beyond() == Approx(before).epsilon(0.2));  // a column stands for a quarter of a cell
+}
+
 // Points go on for a cell and a half beyond the outer nodes. Their pixels end at half a cell.
 TEST_CASE("Depth at the terrain's open edge is that of what stands on its pixels", "[stages]") {
     constexpr double kPart = 0.125, kDepth = 1.0;
