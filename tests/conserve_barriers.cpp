@@ -509,7 +509,7 @@ TEST_CASE("Depth before a wall is that of what stands there, whatever the wall t
     const GridGeometry& g = scene.bed.geometry;  // cells of 0.5 m
     for (const double face : {10.0, 9.75}) {
         scene.barriers[0].outline = rectangle_of(face, -1.0, 12.0, 5.0);
-        const OpenShares shares(scene);
+        const OpenShares shares(scene, NodeBox::all(g));
         const std::vector<double>& open = shares.at_bed();
         const auto at = [&](double x) {
             return open[static_cast<std::size_t>(4 * g.nx + std::lround((x - g.x0) / g.cell))];
@@ -522,6 +522,41 @@ TEST_CASE("Depth before a wall is that of what stands there, whatever the wall t
         CHECK(at(0.0) == Approx(0.5));  // at the window's closed side, which is the terrain's wall
         CHECK(open.front() == Approx(0.25));
     }
+}
+
+// Columns have a ramp of two cells before a barrier. Points come as far as its face, over the ground.
+TEST_CASE("In a 3D stage places and nodes show the ground that points stand on, before, after and beside the window",
+          "[barrier]") {
+    Scene scene = channel(4.0);
+    const GridGeometry& g = scene.bed.geometry;  // cells of 0.5 m
+    scene.barriers[0].outline = rectangle_of(10.0, -1.0, 12.0, 5.0);
+    scene.solid->from = 0.3;
+    scene.solid->until = 0.8;
+    scene.solid->window = {6, 0, 22, 8};  // to x = 11, in the barrier
+    scene.solid->closed = {false, true, false, true};
+    StagedRun run(scene);
+    const auto check_at = [&](double x, double ground) {
+        CAPTURE(run.status().time, x);
+        Frame frame = run.frame();
+        const auto k = static_cast<std::size_t>(4 * g.nx + std::lround((x - g.x0) / g.cell));
+        const double depth = frame.node("depth")->data[k];
+        CHECK(frame.node("elevation")->data[k] == Approx(ground).epsilon(1e-12));
+        CHECK(frame.node("surface")->data[k] == Approx(ground + depth).epsilon(1e-12));
+        CHECK(run.at({x, 2.0}).elevation == Approx(ground).epsilon(1e-12));
+    };
+    const auto of_columns = [&](double x) { return run.columns().at({x, 2.0}).elevation; };
+    run_to(run, 0.2);
+    for (const double x : {9.5, 10.0, 10.5}) check_at(x, of_columns(x));
+    run_to(run, 0.7);
+    CHECK(of_columns(9.5) > 2.5);  // the ramp
+    for (const double x : {8.0, 9.0, 9.5, 10.0}) check_at(x, 2.0);
+    for (const double x : {11.0}) check_at(x, 6.0);  // the barrier fills what this node stands for
+    CHECK(run.at({9.8, 2.0}).elevation == Approx(2.0).epsilon(1e-12));
+    for (const double x : {11.5, 12.0, 12.5}) check_at(x, of_columns(x));  // beyond the window
+    CHECK(of_columns(12.5) > 2.5);
+    run_to(run, 0.9);
+    REQUIRE(run.points()->status().points == 0);
+    for (const double x : {9.5, 10.0, 10.5}) check_at(x, of_columns(x));
 }
 
 // A lake at rest over a low box whose faces stand on nodes, between them, and on a slope: a node on a face is as deep
@@ -564,6 +599,103 @@ TEST_CASE("Depth on the crest of a barrier is that of what stands there, next to
         CAPTURE(x, y);
         CHECK(map.depth(k) == Approx(on_crest ? kLevel - kHigh : kLevel).epsilon(slope > 0.0 ? kPart / kLevel : 1e-9));
     }
+}
+
+// The terrain's rows lie one behind the other: what is beyond the east end of one is not at the west of the next.
+TEST_CASE("Points beyond the terrain's edge become columns there, whatever barrier stands at the other edge",
+          "[barrier][stages]") {
+    Scene scene = channel(4.0);
+    scene.sides = Sides::open;
+    scene.barriers[0].outline = rectangle_of(-1.0, -1.0, 1.0, 5.0);
+    fill(scene, [](double x, double) { return x > 8 && x < 14 ? 1.0 : 0.0; });
+    scene.particles.vx.assign(scene.particles.x.size(), 5.0);
+    scene.solid->closed = {};
+    scene.solid->until = 0.25;
+    const double edge = scene.bed.geometry.x_max();
+    StagedRun run(scene);
+    run_to(run, 0.249);
+    const auto beyond = [&] {
+        Frame frame = run.frame();
+        const Field &place = *frame.particle("position"), &mass = *frame.particle("mass");
+        double sum = 0.0;
+        for (Index p = 0; p < mass.count; ++p)
+            if (place.data[3 * p] > edge) sum += mass.data[p];
+        return sum;
+    };
+    const double before = beyond();
+    REQUIRE(before > 0.01 * run.status().mass);
+    run_to(run, 0.25);
+    REQUIRE(run.points()->status().points == 0);
+    CHECK(beyond() == Approx(before).epsilon(0.2));  // a column stands for a quarter of a cell
+}
+
+// Points go on for a cell and a half beyond the outer nodes. Their pixels end at half a cell.
+TEST_CASE("Depth at the terrain's open edge is that of what stands on its pixels", "[stages]") {
+    constexpr double kPart = 0.125, kDepth = 1.0;
+    Scene scene = scene_on(9, 7, 1.0, [](double, double) { return 2.0; });
+    scene.density = 1000.0;
+    scene.solid = SolidStage{};
+    scene.solid->window = {0, 0, 8, 6};
+    SolidScene space;
+    space.density = scene.density;
+    space.law = solid::Fluid{1e6, 0.0};
+    space.grid = {Vec3(-2, -2, 1), 0.5, {27, 23, 8}};
+    for (double x = -1.5 + 0.5 * kPart; x < 9.5; x += kPart)
+        for (double y = -1.5 + 0.5 * kPart; y < 7.5; y += kPart)
+            for (double above = 0.5 * kPart; above < kDepth; above += kPart)
+                space.points.add({x, y, 2.0 + above}, Vec3::Zero(), scene.density * std::pow(kPart, 3), 0.0);
+    FlowMap map(scene);
+    map.sample(Mpm3d(space), 0.0);
+    for (Index k = 0; k < scene.bed.geometry.size(); ++k) {
+        CAPTURE(k);
+        CHECK(map.depth(k) == Approx(kDepth).epsilon(1e-9));
+    }
+    CHECK(!map.remark());
+}
+
+// Columns of points of 0.125 m, 3 m of them, over a slope: as high as their volume, or pressed together into a third.
+TEST_CASE("Where points lie in one another, the map's depth is more than they reach, and the run says so", "[stages]") {
+    constexpr double kPart = 0.125, kDepth = 3.0;
+    const auto bed = [](double x, double) { return 10.0 + 0.25 * x; };
+    Scene scene = scene_on(15, 12, 1.0, bed);
+    scene.density = 1000.0;
+    scene.solid = SolidStage{};
+    scene.solid->window = {0, 0, 14, 11};
+    const auto points = [&](double squeeze) {
+        SolidScene space;
+        space.density = scene.density;
+        space.law = solid::Fluid{1e6, 0.0};
+        space.grid = {Vec3(-1, -1, 9), 0.5, {35, 29, 24}};
+        for (double x = 4.0 + 0.5 * kPart; x < 10.0; x += kPart)
+            for (double y = 4.0 + 0.5 * kPart; y < 8.0; y += kPart)
+                for (double above = 0.5 * kPart; above < kDepth; above += kPart)
+                    space.points.add({x, y, bed(x, y) + squeeze * above}, Vec3::Zero(),
+                                     scene.density * std::pow(kPart, 3), 0.0);
+        return Mpm3d(space);
+    };
+    FlowMap map(scene);
+    map.sample(points(1.0), 1.0);
+    CHECK(!map.remark());
+    map.sample(points(0.75), 1.5);  // a third more: compressed, or rough
+    CHECK(!map.remark());
+    const auto check = [](const FlowMap& seen) {
+        CHECK(seen.piled().depth == Approx(kDepth).epsilon(1e-9));
+        CHECK(seen.piled().height == Approx((kDepth - 0.5 * kPart) / 3.0 + 0.5 * kPart).epsilon(1e-9));
+        CHECK(seen.piled().time == 2.0);
+        CHECK((seen.piled().x >= 5.0 && seen.piled().x <= 9.0 && seen.piled().y >= 5.0 && seen.piled().y <= 7.0));
+        REQUIRE(seen.remark().has_value());
+        CHECK_THAT(*seen.remark(),
+                   Catch::Contains("t = 2 s their volume makes 3 m of depth") && Catch::Contains("reaches 1.04 m"));
+    };
+    map.sample(points(1.0 / 3.0), 2.0);
+    check(map);
+    map.sample(points(1.0), 3.0);  // it stays said
+    check(map);
+    MemoryArchive saved;
+    map.serialize(saved);
+    FlowMap again(scene);
+    again.serialize(saved.rewind());
+    check(again);
 }
 
 TEST_CASE("Where points are no more, a barrier's table has no force, and none is the largest of what never came",

@@ -555,7 +555,8 @@ TEST_CASE("Columns take up their bed before and beside a 3D stage, and the bed i
             const Index k = j * frame.grid.nx + i;
             const double sunk = ground[static_cast<std::size_t>(k)] - elevation.data[k];
             deepest = std::max(deepest, sunk);
-            if (i >= w[0] - 2) CHECK(sunk == 0.0);
+            // A plane: the columns' bed, a mean of nodes around, is the points' ground to round-off.
+            if (i >= w[0] - 2) CHECK(sunk == Approx(0.0).margin(i >= w[0] ? 1e-13 : 0.0));
         }
     CHECK(deepest > 0.05);
 }

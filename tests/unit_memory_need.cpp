@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "catch.h"
 #include "convert/solid_points.h"
+#include "coupling/flow_map.h"
 #include "coupling/stage_conversion.h"
 #include "coupling/staged_run.h"
 #include "scene/build_scene.h"
@@ -61,4 +62,32 @@ TEST_CASE("Columns that become points are counted before they are divided", "[me
     scene.solid->spacing = 1e-6;
     CHECK_THROWS_WITH(StagedRun(scene),
                       Catch::StartsWith("stage.spacing = 1e-06: makes ") && Catch::Contains("give a larger spacing"));
+}
+
+// On all of the terrain the beds of columns, points and run, and depths. On the window's part what the map of points has.
+TEST_CASE("A 3D stage asks for the memory of its nodes, those of its window above all", "[memory]") {
+    Scene scene = scene_of(kStage);
+    const auto asked = [&] { return memory_need(scene).nodes; };
+    const double with = asked();
+    const double size = double(scene.bed.geometry.size());
+    const std::array<Index, 4> window = scene.solid->window;
+    scene.solid->window[2] -= 10;
+    const double rows = double(window[3] - window[1] + 1), map = double(sizeof(FlowMap::Node) + sizeof(NodePeak));
+    CHECK(with - asked() >= 10.0 * rows * map);
+    CHECK(with - asked() <= 10.0 * double(scene.bed.geometry.ny) * 2.5 * map);
+    scene.solid.reset();
+    CHECK(with - asked() >= size * 3.0 * sizeof(double) + double((window[2] - window[0]) * rows) * map);
+}
+
+// What the map had on all of the terrain took five times as long to look at as the points themselves.
+TEST_CASE("The map of points has the nodes of their window and its rim alone, with the terrain's depths", "[stages]") {
+    Scene scene = scene_of(kStage);
+    const std::array<Index, 4>& w = scene.solid->window;
+    const FlowMap map(scene);
+    const NodeBox& box = map.nodes();
+    CHECK(box.nx * box.ny < scene.bed.geometry.size());
+    for (const auto& [i, j] : {std::pair(w[0], w[1]), std::pair(w[2], w[3])})
+        CHECK(map.number(i, j) == (j - box.j0) * box.nx + i - box.i0);
+    CHECK(map.number(w[2] + 20, w[3]) == -1);
+    CHECK(map.at({scene.bed.geometry.x_max(), scene.bed.geometry.y_max()}).depth == 0.0);
 }

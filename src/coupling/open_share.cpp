@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "coupling/barriers.h"
 #include "coupling/solid_scene.h"
@@ -43,32 +44,39 @@ double weight_of(int part) {
     return (1.0 - std::abs(away.x())) * (1.0 - std::abs(away.y()));
 }
 
-/// body(node, its place) around these corners.
-template <class Body>
-void for_each_node_around(const std::vector<Vec2>& corners, const GridGeometry& g, Body&& body) {
-    const NodeBox box = common(widened(cells_of(corners, g), 1), NodeBox::all(g));
-    for (Index j = box.j0; j < box.j0 + box.ny; ++j)
-        for (Index i = box.i0; i < box.i0 + box.nx; ++i) body(j * g.nx + i, Vec2(g.x(i), g.y(j)));
-}
+/// A box of a grid's nodes.
+struct BoxOfNodes {
+    GridGeometry grid;
+    NodeBox box;
+
+    /// body(number in the box, place) of those around these corners.
+    template <class Body>
+    void each_around(const std::vector<Vec2>& corners, Body&& body) const {
+        const NodeBox near = common(widened(cells_of(corners, grid), 1), box);
+        for (Index j = near.j0; j < near.j0 + near.ny; ++j)
+            for (Index i = near.i0; i < near.i0 + near.nx; ++i)
+                body((j - box.j0) * box.nx + i - box.i0, Vec2(grid.x(i), grid.y(j)));
+    }
+};
 
 /// What is taken of each node that anything may take room from.
 class TakenRoom {
 public:
-    explicit TakenRoom(const GridGeometry& grid) : g_(grid) {}
+    explicit TakenRoom(const BoxOfNodes& nodes) : nodes_(nodes) {}
 
     /// Marks the parts of nodes around these corners at which `takes(place)` holds.
     template <class Takes>
     void mark(const std::vector<Vec2>& corners, Takes&& takes) {
-        for_each_node_around(corners, g_, [&](Index node, const Vec2& at) {
+        nodes_.each_around(corners, [&](Index node, const Vec2& at) {
             Taken& taken = taken_[node];
             for (int part = 0; part < kAllParts; ++part)
-                if (takes(Vec2(at + g_.cell * to_part(part)))) taken.set(part);
+                if (takes(Vec2(at + nodes_.grid.cell * to_part(part)))) taken.set(part);
         });
     }
     const std::map<Index, Taken>& by_node() const { return taken_; }
 
 private:
-    GridGeometry g_;
+    BoxOfNodes nodes_;
     std::map<Index, Taken> taken_;
 };
 
@@ -101,31 +109,32 @@ struct Solid {
     }
 };
 
+/// 0 where it is next to nothing: points there are on top.
 double open_share(const Taken& taken) {
-    constexpr double kNothing = 0.05;  // points there are on top
+    constexpr double kNothing = 0.05;
     double all = 0.0, open = 0.0;
     for (int part = 0; part < kAllParts; ++part) {
         all += weight_of(part);
         if (!taken[part]) open += weight_of(part);
     }
-    return open < kNothing * all ? 1.0 : open / all;
+    return open < kNothing * all ? 0.0 : open / all;
 }
 
 /// Up to where barriers take a node's parts [m].
 using Tops = std::array<double, kAllParts>;
 
 /// Of nodes that have some room on the bed, and not all. On the others nothing stands below a top.
-std::map<Index, Tops> tops_of(const std::vector<Solid>& solids, const Scene& scene, const std::vector<double>& at_bed) {
-    const GridGeometry& g = scene.bed.geometry;
+std::map<Index, Tops> tops_of(const std::vector<Solid>& solids, const Raster& bed, const BoxOfNodes& nodes,
+                              const std::vector<double>& at_bed) {
     Tops none;
     none.fill(-INFINITY);
     std::map<Index, Tops> tops;
     for (const Solid& solid : solids)
-        for_each_node_around(solid.corners, g, [&](Index node, const Vec2& at) {
+        nodes.each_around(solid.corners, [&](Index node, const Vec2& at) {
             if (!(at_bed[static_cast<std::size_t>(node)] < 1.0)) return;
             int part = 0;
             for (double& top : tops.try_emplace(node, none).first->second)
-                top = std::max(top, solid.top_at(at + g.cell * to_part(part++), scene.bed));
+                top = std::max(top, solid.top_at(at + nodes.grid.cell * to_part(part++), bed));
         });
     return tops;
 }
@@ -145,8 +154,10 @@ std::map<double, double> shares_above(const Tops& tops, const Taken& by_sides) {
 
 }  // namespace
 
-OpenShares::OpenShares(const Scene& scene) : at_bed_(static_cast<std::size_t>(scene.bed.geometry.size()), 1.0) {
-    TakenRoom room(scene.bed.geometry);
+OpenShares::OpenShares(const Scene& scene, const NodeBox& box)
+    : at_bed_(static_cast<std::size_t>(box.nx * box.ny), 1.0) {
+    const BoxOfNodes nodes{scene.bed.geometry, box};
+    TakenRoom room(nodes);
     mark_sides(scene, room);
     const std::map<Index, Taken> by_sides = room.by_node();
     std::vector<Solid> solids;
@@ -154,8 +165,18 @@ OpenShares::OpenShares(const Scene& scene) : at_bed_(static_cast<std::size_t>(sc
         for (const Barrier& barrier : scene.barriers) solids.emplace_back(barrier, scene);
     for (const Solid& solid : solids)
         room.mark(solid.corners, [&](const Vec2& place) { return std::isfinite(solid.top_at(place, scene.bed)); });
-    for (const auto& [node, taken] : room.by_node()) at_bed_[static_cast<std::size_t>(node)] = open_share(taken);
-    const std::map<Index, Tops> tops = tops_of(solids, scene, at_bed_);
+    std::set<Index> filled;
+    for (const auto& [node, taken] : room.by_node()) {
+        const double open = open_share(taken);
+        at_bed_[static_cast<std::size_t>(node)] = open > 0.0 ? open : 1.0;
+        if (!(open > 0.0)) filled.insert(node);
+    }
+    for (const Solid& solid : solids)
+        nodes.each_around(solid.corners, [&](Index node, const Vec2& at) {
+            const double top = filled.count(node) ? solid.top_at(at, scene.bed) : -INFINITY;
+            if (std::isfinite(top)) top_below_[node] = std::fmax(this->top_below(node), top);
+        });
+    const std::map<Index, Tops> tops = tops_of(solids, scene.bed, nodes, at_bed_);
     if (!tops.empty()) begin_.assign(at_bed_.size() + 1, 0);
     for (const auto& [node, own] : tops) {
         const auto k = static_cast<std::size_t>(node);

@@ -41,7 +41,9 @@ void StagedRun::show_points() {
         const bool walls = scene_.sides == Sides::wall;
         const double scale = 1.0 / (scene_.density * g.cell * g.cell);
         std::vector<double>& depth = points_depth_;
-        depth.assign(static_cast<std::size_t>(g.size()), 0.0);
+        depth.resize(static_cast<std::size_t>(g.size()));
+        const NodeBox& box = map_.nodes();  // elsewhere points give nothing
+        for (Index j = box.j0; j < box.j0 + box.ny; ++j) std::fill_n(depth.begin() + (j * g.nx + box.i0), box.nx, 0.0);
         for (Index p = 0; p < q.count(); ++p) {
             const Vec3 x = points_->position(p);
             const Along u((x[0] - g.x0) / g.cell, g.nx, walls), v((x[1] - g.y0) / g.cell, g.ny, walls);

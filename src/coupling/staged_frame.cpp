@@ -1,21 +1,13 @@
 // What a run in stages shows: fields of columns and points together, and of the nodes that both stand on.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "coupling/staged_run.h"
 #include "terrain/bed_points.h"
 
 namespace frana {
-namespace {
-
-/// Writes over a scalar at all nodes.
-template <class At>
-void each_node(double* values, Index count, At&& at) {
-    for (Index k = 0; k < count; ++k) values[k] = at(k);
-}
-
-}  // namespace
 
 Frame StagedRun::frame() {
     if (!points_) return columns_->frame();
@@ -75,46 +67,63 @@ void StagedRun::particle_fields(Frame& frame) {
     }
 }
 
-/// Depths and pressures of both add; velocities are those of their common momentum.
+/// Depths and pressures of both add; velocities are those of their common momentum. Only nodes that points can give to
+/// change, where they are: in the memory of the columns' frame, which nobody else has and their next one writes anew.
 void StagedRun::node_fields(Frame& frame) {
-    const Index count = map_.grid().size();
-    std::vector<Field> columns = std::move(frame.nodes);
-    frame.nodes.clear();
-    double* depth = nullptr;
-    const double* depth_of_columns = nullptr;
-    for (const Field& field : columns) {
-        double* const values = store_.raw(frame.nodes, field.name, field.unit, field.components, count);
-        std::copy_n(field.data, count * field.components, values);
-        const auto more = [&](const auto& at) { each_node(values, count, [&](Index k) { return values[k] + at(k); }); };
-        const auto most = [&](double NodePeak::*peak) {
-            each_node(values, count, [&](Index k) { return std::max(values[k], map_.peak(k).*peak); });
-        };
-        if (field.name == "depth") depth = values, depth_of_columns = field.data;
-        if (field.name == "depth" || field.name == "surface") more([&](Index k) { return map_.depth(k); });
-        if (field.name == "thickness") more([&](Index k) { return map_.depth(k) * map_.cosine(k); });
-        if (field.name == "pressure") more([&](Index k) { return map_.pressure(k); });
-        if (field.name == "peak_depth") most(&NodePeak::depth);
-        if (field.name == "peak_speed") most(&NodePeak::speed);
-        if (field.name == "peak_pressure") most(&NodePeak::pressure);
-        if (field.name == "peak_dynamic_pressure") most(&NodePeak::dynamic_pressure);
-        if (field.name == "arrival_time")
-            each_node(values, count, [&](Index k) {
-                const double here = map_.peak(k).arrival_time(map_.footprint_depth());
-                return values[k] < 0.0 ? here : here < 0.0 ? values[k] : std::min(values[k], here);
-            });
-        if (field.name == "velocity")
-            for (Index k = 0; k < count; ++k) {
-                const double before = depth_of_columns[k], all = depth[k];
-                const Vec3 v = map_.velocity(k);
-                for (Index c = 0; c < 3 && all > 0.0; ++c)
-                    values[3 * k + c] = (before * values[3 * k + c] + (all - before) * v[c]) / all;
-            }
-        if (field.name == "speed")
-            each_node(values, count, [&](Index k) {
-                const double all = depth[k], before = depth_of_columns[k];
-                return all > 0.0 ? (before * values[k] + (all - before) * map_.velocity(k).norm()) / all : 0.0;
-            });
-    }
+    const GridGeometry& g = scene_.bed.geometry;
+    const NodeBox& box = map_.nodes();
+    const auto each = [&](const char* name, const auto& change) {
+        const Field* const field = frame.node(name);
+        if (!field) return;
+        auto* const values = const_cast<double*>(field->data);
+        Index m = 0;
+        for (Index j = box.j0; j < box.j0 + box.ny; ++j)
+            for (Index i = box.i0; i < box.i0 + box.nx; ++i, ++m)
+                change(values + (j * g.nx + i) * field->components, m);
+    };
+    const auto more = [&](const char* name, const auto& at) {
+        each(name, [&](double* value, Index m) { *value += at(m); });
+    };
+    const auto most = [&](const char* name, double NodePeak::*peak) {
+        each(name, [&](double* value, Index m) { *value = std::max(*value, map_.peak(m).*peak); });
+    };
+    std::vector<double> before;  // of columns
+    before.reserve(static_cast<std::size_t>(box.nx * box.ny));
+    each("depth", [&](double* depth, Index m) { before.push_back(*depth), *depth += map_.depth(m); });
+    const auto depths = [&](Index m) {
+        const double of_columns = before[static_cast<std::size_t>(m)];
+        return std::pair(of_columns, of_columns + map_.depth(m));
+    };
+    more("surface", [&](Index m) { return map_.depth(m); });
+    more("thickness", [&](Index m) { return map_.depth(m) * map_.cosine(m); });
+    more("pressure", [&](Index m) { return map_.pressure(m); });
+    most("peak_depth", &NodePeak::depth);
+    most("peak_speed", &NodePeak::speed);
+    most("peak_pressure", &NodePeak::pressure);
+    most("peak_dynamic_pressure", &NodePeak::dynamic_pressure);
+    each("arrival_time", [&](double* time, Index m) {
+        const double here = map_.peak(m).arrival_time(map_.footprint_depth());
+        *time = *time < 0.0 ? here : here < 0.0 ? *time : std::min(*time, here);
+    });
+    each("velocity", [&](double* value, Index m) {
+        const auto [of_columns, all] = depths(m);
+        const Vec3 v = map_.velocity(m);
+        for (Index c = 0; c < 3 && all > 0.0; ++c) value[c] = (of_columns * value[c] + (all - of_columns) * v[c]) / all;
+    });
+    each("speed", [&](double* speed, Index m) {
+        const auto [of_columns, all] = depths(m);
+        *speed = all > 0.0 ? (of_columns * *speed + (all - of_columns) * map_.velocity(m).norm()) / all : 0.0;
+    });
+    if (ended_) return;
+    each("elevation", [&](double* elevation, Index m) {
+        if (!std::isnan(*elevation)) *elevation = ground_at(box.i0 + m % box.nx, box.j0 + m / box.nx);
+    });
+    const double* const elevation = frame.node("elevation")->data;
+    const double* const depth = frame.node("depth")->data;
+    each("surface", [&](double* surface, Index m) {
+        const Index i = box.i0 + m % box.nx, j = box.j0 + m / box.nx, k = j * g.nx + i;
+        if (stands_in_window(i, j)) *surface = elevation[k] + depth[k];
+    });
 }
 
 }  // namespace frana

@@ -49,8 +49,11 @@ Vec2 StagedRun::place_of_column(const DepartedPoint& point, const Vec2& to) {
     return place.value_or(x);
 }
 
+/// Not beyond the terrain, where points may be.
 bool StagedRun::is_raised(Index i, Index j) const {
-    return !raised_.empty() && raised_[static_cast<std::size_t>(j * scene_.bed.geometry.nx + i)] != 0;
+    const GridGeometry& g = scene_.bed.geometry;
+    if (raised_.empty() || i < 0 || j < 0 || i >= g.nx || j >= g.ny) return false;
+    return raised_[static_cast<std::size_t>(j * g.nx + i)] != 0;
 }
 
 bool StagedRun::on_raised(const Vec2& x) const {

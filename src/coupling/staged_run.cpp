@@ -12,6 +12,7 @@
 #include "coupling/bed_friction.h"
 #include "coupling/start_pressure.h"
 #include "terrain/part_of.h"
+#include "terrain/places.h"
 
 namespace frana {
 
@@ -318,6 +319,21 @@ bool StagedRun::may_rest() const {
     return points_ && (!scene_.solid->until || (ended_ && columns_->status().dt > 0.0));
 }
 
+/// Whether it is points that stand on a node.
+bool StagedRun::stands_in_window(Index i, Index j) const {
+    const std::array<Index, 4>& w = scene_.solid->window;
+    return points_ && !ended_ && i >= w[0] && j >= w[1] && i <= w[2] && j <= w[3];
+}
+
+/// What depth at a node stands on [m]. In the window of points it is their ground, or the top of a barrier that leaves no
+/// room beside it. Columns have barriers as ground, with a ramp before each: the ground elsewhere.
+double StagedRun::ground_at(Index i, Index j) const {
+    const double of_columns = columns_->flow().bed.z[columns_->flow().grid.at(i, j)];
+    if (!stands_in_window(i, j)) return of_columns;
+    const double top = map_.top_below(map_.number(i, j)), bed = scene_.bed.at(i, j);
+    return std::isfinite(top) ? top : std::isfinite(bed) ? bed : of_columns;
+}
+
 Sample StagedRun::at(const Vec2& point) const {
     Sample sample = columns_->at(point);
     if (!points_) return sample;
@@ -328,6 +344,11 @@ Sample StagedRun::at(const Vec2& point) const {
         sample.speed = (sample.depth * sample.speed + more.depth * more.speed) / depth;
     }
     sample.depth = depth;
+    sample.elevation = 0.0;
+    const NodeSquare around(scene_.bed.geometry, point);
+    for (Index n = 0; n < 4; ++n)
+        if (const double w = around.weight(n); w > 0.0)
+            sample.elevation += w * ground_at(around.node(n).i, around.node(n).j);
     return sample;
 }
 
@@ -358,11 +379,11 @@ void StagedRun::remark_law(std::vector<std::string>& remarks) const {
 double StagedRun::deepest_at(const Surface& barrier) const {
     const GridGeometry& g = scene_.bed.geometry;
     const auto [low, high] = box_around(barrier);
-    const NodeBox box = common(widened(cells_of({low.head<2>(), high.head<2>()}, g), 1), NodeBox::all(g));
+    const NodeBox box = common(widened(cells_of({low.head<2>(), high.head<2>()}, g), 1), map_.nodes());
     double deepest = 0.0;
     for (Index j = box.j0; j < box.j0 + box.ny; ++j)
         for (Index i = box.i0; i < box.i0 + box.nx; ++i) {
-            const double depth = map_.peak(j * g.nx + i).depth,
+            const double depth = map_.peak(map_.number(i, j)).depth,
                          distance =
                              depth > deepest ? contact(barrier, {g.x(i), g.y(j), scene_.bed.at(i, j)}).distance : -1.0;
             if (distance >= 0.0 && distance <= g.cell) deepest = depth;
@@ -452,6 +473,7 @@ std::vector<std::string> StagedRun::remarks() const {
                     gone > kRoundOff * s.mass_left ? gone / density : 0.0, start_.top));
     remark_law(remarks);
     remark_cells(remarks);
+    if (const auto piled = map_.remark()) remarks.push_back(*piled);
     const bool fluid = std::visit([](const auto& law) { return law.kAverages; }, scene_.solid->law);
     if (fluid || scene_.solid->of_bed) {
         remarks.push_back(

@@ -112,6 +112,8 @@ private:
     void serialize_returning(Archive& archive);
     void particle_fields(Frame& frame);
     void node_fields(Frame& frame);
+    bool stands_in_window(Index i, Index j) const;
+    double ground_at(Index i, Index j) const;
 
     Scene scene_;
     Footings footings_;  ///< what barriers stand on

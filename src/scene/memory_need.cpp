@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "scene/stage_reach.h"
 
 namespace frana {
 namespace {
@@ -31,6 +32,15 @@ constexpr double graphics_need = 350e6;  ///< besides, for pictures: software Op
 
 /// A 3D grid has an entry for each of its tiles, and storage of those that are reached only.
 constexpr double tile_nodes_3d = 512.0, bytes_per_tile_3d = 16.0;
+
+/// For each node of the terrain with a 3D stage: its own copy of the bed, the points' ground, their depth for columns,
+/// and marks. Besides, for each that points can give to: what stands there, its peaks, and columns beside them.
+constexpr double stage_rate = 3.0 * sizeof(double) + 2.0, points_map_rate = 18.0 * sizeof(double);
+
+double memory_of_stage(const Scene& scene) {
+    const NodeBox box = nodes_of_points(scene);
+    return stage_rate * double(scene.bed.geometry.size()) + points_map_rate * double(box.nx * box.ny);
+}
 
 double tiles_3d(const Scene& scene) {
     const SolidStage& stage = *scene.solid;
@@ -114,7 +124,9 @@ MemoryNeed memory_need(const Scene& scene) {
     const bool draws = std::any_of(scene.insitu.begin(), scene.insitu.end(),
                                    [](const Insitu& entry) { return kind_word(entry.kind) == std::string("figure"); });
     if (scene.output.png || draws) need.base += graphics_need;
-    if (scene.solid) need.space = bytes_per_point * most_points(scene) + bytes_per_tile_3d * tiles_3d(scene);
+    if (!scene.solid) return need;
+    need.nodes += memory_of_stage(scene);
+    need.space = bytes_per_point * most_points(scene) + bytes_per_tile_3d * tiles_3d(scene);
     return need;
 }
 

@@ -509,6 +509,14 @@ private:
         return Vec3(had.x, had.y, had.z).squaredNorm() / (body.real[k].m * body.real[k].m);
     }
 
+    /// The same of what points and adjacent material share. Of that its motion after the step's impulses is known only.
+    static double had2_in_common(const SolidBody& body, Index k) {
+        if constexpr (!flip) return 0.0;
+        const SolidBody::Node &had = body.flip_sums[k], &own = body.ghosts.own[k], &both = body.real[k];
+        const Vec3 of_other(both.x - own.x, both.y - own.y, both.z - own.z);
+        return (Vec3(had.x, had.y, had.z) + of_other).squaredNorm() / (both.m * both.m);
+    }
+
     /// Where impulses on the nodes of a tile are recorded.
     struct Given {
         Vec3* impulse;                    ///< per surface
@@ -620,7 +628,8 @@ private:
         impulse.fill(Vec3::Zero());
         SurfaceWork work{};
         const std::size_t before = given.faces ? given.faces->size() : 0;
-        Vec3 v = meet(body, near, node, x, real, mixed, 0.0, {impulse.data(), given.faces, &work});
+        Vec3 v =
+            meet(body, near, node, x, real, mixed, had2_in_common(body, node), {impulse.data(), given.faces, &work});
         for (std::size_t s = 0; s < body.surfaces.size(); ++s) given.impulse[s] += share * impulse[s];
         given.work->contact_work += share * work.contact_work, given.work->friction += share * work.friction;
         if (given.faces)
