@@ -40,7 +40,7 @@ double left_over(WaterFlow& flow, const Pool& pool, double time) {
 
 }  // namespace
 
-// Before THEORY (4a) it stood there at rest, up to a third of the drop behind the wall.
+// It stood there at rest, up to a third of the drop behind the wall.
 TEST_CASE("A lake runs over a wall of one cell down to its crest, however deep it falls", "[water][conserve]") {
     const double height = GENERATE(1.0, 3.0, 10.0, 30.0), over = GENERATE(0.1, 0.3);
     CAPTURE(height, over);

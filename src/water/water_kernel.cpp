@@ -11,7 +11,7 @@ namespace frana {
 namespace {
 
 /// The change of depth over four cells whose water is thin against its fall there leaves half of it at each face. A film
-/// that ends on a slope would be all on its upper side: it stayed, and went on to speed up. THEORY (4b).
+/// that ends on a slope would be all on its upper side: it stayed, and went on to speed up. THEORY, section 3.
 [[gnu::always_inline]] inline Double4 within_depth(Double4 h, Double4 of_surface, Double4 of_depth) {
     constexpr double kThin = 1.0 / 8;  // of its fall, from where on it is so
     const Double4 most = max(h, 2.0 * h - kThin * abs(of_surface));
@@ -22,7 +22,7 @@ namespace {
 /// both cells, give or take an eighth of the depth. Limited by themselves they raise it at a crest to the surface of the
 /// water before that, or put what is left on a crest all on its upper side. At the foot of a slope they lower the surface to
 /// dry ground behind. Nothing would pass, however high it stood, and the slope would go on to speed it up. `before`,
-/// `behind`: the change of the ground from the cell before, and to the one behind. THEORY (4a).
+/// `behind`: the change of the ground from the cell before, and to the one behind. THEORY, section 3.
 [[gnu::always_inline]] inline void keep_ground(Double4 h, Double4 surface, Double4 before, Double4 behind,
                                                Double4& of_depth, Double4& of_surface) {
     constexpr double kRoundOff = 1e-13;  // of the elevation; a lake on rough ground is left to the last bit
