@@ -3,6 +3,7 @@
 #include "catch.h"
 #include "fake_simulation.h"
 #include "fresh_folder.h"
+#include "observe/budget.h"
 #include "observe/gauges.h"
 #include "observe/history.h"
 #include "observe/profiles.h"
@@ -97,6 +98,16 @@ TEST_CASE("history holds a line per step with the simulation's own numbers") {
     CHECK(table.column("momentum_residual_x")[last] == left_over.momentum_residual[0]);
     CHECK(table.column("momentum_residual_y")[last] == left_over.momentum_residual[1]);
     CHECK(table.column("energy_residual")[last] == left_over.energy_residual);
+}
+
+TEST_CASE("energy that nothing gave is told by its share of what the flow turned over") {
+    Status first, now;
+    first.kinetic = 5.0, first.potential = 100.0, first.dissipated = 1.0;
+    now.kinetic = 20.0, now.potential = 50.0, now.dissipated = 31.0;
+    CHECK(share_made(first, now) == 0.0);  // 5 J are missing
+    now.potential = 60.0;
+    CHECK(share_made(first, now) == Approx(5.0 / 50.0));
+    CHECK(share_made(first, first) == 0.0);
 }
 
 TEST_CASE("history per output holds a line per frame, also when the run is interrupted between frames") {
