@@ -148,7 +148,7 @@ void measure_runs(ConvergenceStudy& study, const Raster& bed) {
         const RunFiles files = read_run(run.folder);
         study.figures.push_back(figures_of(files, finest, path, study.footprint_depth));
         study.ends.push_back(files.record["exit_reason"].get<std::string>());
-        particles = particles || files.record["particle_steps"].get<double>() > 0.0;
+        particles = particles || files.record.value("particle_steps", 1.0) > 0.0;
     }
     for (Variation& varied : study.variations) {
         for (const fs::path& folder : varied.folders)
