@@ -134,12 +134,27 @@ TEST_CASE("Neighbours that part unbroken are numerical fracture, and pieces are 
 TEST_CASE("An obstacle's corner lets by what leaves it, and takes what enters by the nearest face", "[structured]") {
     Obstacle box;
     box.low = {0.0, 0.0}, box.high = {2.0, 1.0}, box.friction = 0.5;
-    CHECK(box.met({-0.1, 0.5}, {1.0, 0.0}, 1e-9) == Vec2(1.0, 0.0));          // outside
-    CHECK(box.met({0.1, 0.5}, {1.0, 2.0}, 1e-9) == Vec2(0.0, 1.5));           // braked along the face
-    CHECK(box.met({0.1, 0.5}, {1.0, -0.3}, 1e-9) == Vec2(0.0, 0.0));          // stopped along it
-    CHECK(box.met({0.1, 0.5}, {-1.0, 2.0}, 1e-9) == Vec2(-1.0, 2.0));         // leaves
-    CHECK(box.met({1.0, 0.9}, {1.0, -1.0}, 1e-9) == Vec2(0.5, 0.0));          // through the top
-    CHECK(box.met({2.0 + 1e-12, 0.5}, {-1.0, 0.0}, 1e-9) == Vec2(0.0, 0.0));  // the face itself
+    const auto met = [](const std::vector<Obstacle>& all, const Vec2& x, Vec2 v) {
+        for (std::size_t n = 0; n < all.size(); ++n)
+            if (const FaceBehind at = nearest_face(all, n, x, 1e-3); at.face >= 0) v = all[n].stopped(at.face, v);
+        return v;
+    };
+    CHECK(met({box}, {-0.1, 0.5}, {1.0, 0.0}) == Vec2(1.0, 0.0));          // outside
+    CHECK(met({box}, {0.1, 0.5}, {1.0, 2.0}) == Vec2(0.0, 1.5));           // braked along the face
+    CHECK(met({box}, {0.1, 0.5}, {1.0, -0.3}) == Vec2(0.0, 0.0));          // stopped along it
+    CHECK(met({box}, {0.1, 0.5}, {-1.0, 2.0}) == Vec2(-1.0, 2.0));         // leaves
+    CHECK(met({box}, {1.0, 0.9}, {1.0, -1.0}) == Vec2(0.5, 0.0));          // through the top
+    CHECK(met({box}, {2.0 + 1e-12, 0.5}, {-1.0, 0.0}) == Vec2(0.0, 0.0));  // the face itself
+    // Of two side by side the seam is no face: there the front counts.
+    Obstacle next = box;
+    next.low.y() = 1.0, next.high.y() = 2.0;
+    CHECK(met({box, next}, {0.4, 0.95}, {1.0, 0.0}) == Vec2(0.0, 0.0));
+    CHECK(met({box, next}, {0.4, 1.0}, {1.0, 0.0}) == Vec2(0.0, 0.0));
+    CHECK(met({box, next}, {0.4, 1.95}, {1.0, 0.0}) == Vec2(1.0, 0.0));  // an end is a face
+    // In the corner of two walls both count.
+    Obstacle west, south;
+    west.high.x() = 0.0, south.high.y() = 0.0;
+    CHECK(met({west, south}, {-0.2, -0.1}, {-1.0, -2.0}) == Vec2(0.0, 0.0));
 }
 
 TEST_CASE("The open share of nodes next to walls is the integral of their shape functions", "[structured]") {

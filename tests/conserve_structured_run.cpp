@@ -469,6 +469,31 @@ TEST_CASE("No wall is so thin that structured columns go through it", "[structur
     }
 }
 
+// Where both met columns gathered in the seam, half as deep again.
+TEST_CASE("Of a wall in two pieces structured columns make what they make of one", "[structured]") {
+    const double seam = GENERATE(7.5, 7.3);
+    const auto deepest = [&](bool two) {
+        Scene scene = sliding();
+        scene.structure->share = 0.0, scene.structure->hydrostatic = true;
+        scene.bed_law = bed::Coulomb{0.1};
+        scene.end = 2.5, scene.sides = Sides::wall;
+        const auto piece = [](double from, double to) {
+            Barrier barrier = wall_across(12.3, 14.3);
+            for (Vec2& corner : barrier.outline.parts[0].rings[0]) corner.y() = corner.y() < 0.0 ? from : to;
+            return barrier;
+        };
+        scene.barriers = {piece(-5.0, 20.0)};
+        if (two) scene.barriers = {piece(-5.0, seam), piece(seam, 20.0)};
+        StructuredRun run(scene);
+        go_to(run, scene.end);
+        const Frame frame = run.frame();
+        double most = 0.0;
+        for (Index n = 0; n < frame.node("depth")->count; ++n) most = std::max(most, frame.node("depth")->data[n]);
+        return most;
+    };
+    CHECK(deepest(true) == Approx(deepest(false)).epsilon(1e-9));
+}
+
 TEST_CASE("A barrier below the ground stops no structured columns", "[structured]") {
     Scene scene = sliding();
     StructuredRun free(scene);

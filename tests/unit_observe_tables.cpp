@@ -108,6 +108,10 @@ TEST_CASE("energy that nothing gave is told by its share of what the flow turned
     now.potential = 60.0;
     CHECK(share_made(first, now) == Approx(5.0 / 50.0));
     CHECK(share_made(first, first) == 0.0);
+    Status lake = first;  // at rest on a mountain: what it turns over is round-off, as what seems made is
+    first.potential = lake.potential = 5e11, lake.potential += 1e-3, lake.kinetic = first.kinetic = 0.0;
+    lake.dissipated += 1e-20;
+    CHECK(share_made(first, lake) == 0.0);
 }
 
 TEST_CASE("history per output holds a line per frame, also when the run is interrupted between frames") {

@@ -211,9 +211,11 @@ TEST_CASE("A barrier's box that is widened, or that a release lies in, is told",
         return all;
     };
     const std::string thin = said("wall.geojson", 8.0);
-    CHECK(has(thin, "barrier.0.outline: found 5 m, less than 3 cells of 5 m: structured columns meet a box 15 m wide"));
+    CHECK(has(thin,
+              "barriers: found 1 of 1 thinner than 3 cells of 5 m, the thinnest \"barrier_1\" with 5 m; structured "
+              "columns would go through those, and meet boxes 15 m wide about their middles"));
     CHECK_FALSE(has(thin, "stands on the cells that it cuts"));
-    CHECK_FALSE(has(said("thick.geojson", 8.0), "structured columns meet a box"));
+    CHECK_FALSE(has(said("thick.geojson", 8.0), "thinner than 3 cells"));
     CHECK(has(said("within.geojson", 8.0), "m3 of releases within it"));
     CHECK_FALSE(has(thin, "of releases within it"));
 }

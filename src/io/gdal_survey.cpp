@@ -132,8 +132,8 @@ std::unique_ptr<OGRMultiPolygon> to_ogr(const Polygons& polygons) {
     return all;
 }
 
-/// Polygons that overlap or share sides become one, since a side within the whole is no outline of it. Others stay as they
-/// are, to the last digit.
+/// Polygons that overlap or share sides become one, since a side within the whole is no outline of it. Where none does all
+/// stay as they are, to the last digit.
 void unite(Polygons& polygons, const fs::path& file, std::vector<std::string>& log) {
     if (polygons.parts.size() < 2) return;
     const std::unique_ptr<OGRMultiPolygon> all = to_ogr(polygons);
@@ -157,8 +157,8 @@ void unite(Polygons& polygons, const fs::path& file, std::vector<std::string>& l
     if (!overlap && parts.size() >= polygons.parts.size()) return;
     log.push_back(overlap ? fmt::format("{}: its polygons overlap by {:.6g} m2, which count once",
                                         file.filename().string(), twice)
-                          : fmt::format("{}: {} polygons that share sides become {}", file.filename().string(),
-                                        polygons.parts.size(), parts.size()));
+                          : fmt::format("{}: {} polygons, some of which share sides, become {}",
+                                        file.filename().string(), polygons.parts.size(), parts.size()));
     polygons.parts = std::move(parts);
 }
 

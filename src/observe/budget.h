@@ -2,6 +2,7 @@
 // What a run has gained or lost that no force and no open side accounts for.
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "observe/frame.h"
 
@@ -41,7 +42,9 @@ inline Budget budget(const Status& first, const Status& now) {
 /// Energy that no force gave, over what friction took since the first status and what moves in the later one [1]. 0 where
 /// energy is missing, as it is behind shocks.
 inline double share_made(const Status& first, const Status& now) {
-    const double made = budget(first, now).energy_residual,
+    constexpr double kRoundOff = 1e-12;  // of a mountain's potential energy, next to which a lake hardly moves
+    const double whole = std::abs(first.potential) + std::abs(now.potential) + std::abs(now.energy_left);
+    const double made = budget(first, now).energy_residual - kRoundOff * whole,
                  turned = std::max(0.0, now.dissipated - first.dissipated) + now.kinetic;
     return made > 0.0 && turned > 0.0 ? made / turned : 0.0;
 }

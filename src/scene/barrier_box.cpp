@@ -9,10 +9,15 @@
 
 namespace frana {
 
-BarrierBox box_around(const Barrier& barrier, double cell) {
+BarrierBox bounds_of(const Barrier& barrier) {
     const std::vector<Vec2>& ring = barrier.outline.parts.front().rings.front();
     BarrierBox box{ring.front(), ring.front()};
     for (const Vec2& corner : ring) box.low = box.low.cwiseMin(corner), box.high = box.high.cwiseMax(corner);
+    return box;
+}
+
+BarrierBox box_around(const Barrier& barrier, double cell) {
+    BarrierBox box = bounds_of(barrier);
     for (int axis = 0; axis < 2; ++axis) {
         const double lacks = kBoxCells * cell - (box.high[axis] - box.low[axis]);
         if (lacks > 0.0) box.low[axis] -= 0.5 * lacks, box.high[axis] += 0.5 * lacks;
@@ -20,10 +25,15 @@ BarrierBox box_around(const Barrier& barrier, double cell) {
     return box;
 }
 
-bool is_buried(const Barrier& barrier, const Raster& bed) {
-    if (!barrier.top || barrier.outline.parts.empty()) return false;
+double lowest_ground(const Barrier& barrier, const Raster& bed) {
     double lowest = INFINITY;
     for (const Polygon& polygon : barrier.outline.parts) lowest = std::min(lowest, lowest_ground(polygon, bed));
+    return lowest;
+}
+
+bool is_buried(const Barrier& barrier, const Raster& bed) {
+    if (!barrier.top) return false;
+    const double lowest = lowest_ground(barrier, bed);
     return *barrier.top <= lowest && !std::isinf(lowest);
 }
 

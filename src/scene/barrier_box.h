@@ -14,9 +14,13 @@ struct BarrierBox {
     bool holds(const Vec2& place) const { return (place - place.cwiseMax(low).cwiseMin(high)).isZero(0.0); }
 };
 
-/// Around the one polygon of a barrier's outline. Where it is thinner than kBoxCells it is as wide, about its middle.
+/// Around the one polygon of a barrier's outline.
+BarrierBox bounds_of(const Barrier& barrier);
+/// The same; where it is thinner than kBoxCells it is as wide, about its middle.
 BarrierBox box_around(const Barrier& barrier, double cell);
 
+/// Of all nodes that a barrier's outline stands on [m]; infinity where it has no ground.
+double lowest_ground(const Barrier& barrier, const Raster& bed);
 /// Whether the barrier's top lies no higher than all ground that it stands on: nothing meets it.
 bool is_buried(const Barrier& barrier, const Raster& bed);
 

@@ -107,12 +107,9 @@ private:
     /// A top that no ground of its outline is below. Erodible ground may free it later.
     void remark_buried(const Barrier& barrier) {
         if (scene_.erodible || !is_buried(barrier, scene_.bed)) return;
-        double lowest = INFINITY;
-        for (const Polygon& polygon : barrier.outline.parts)
-            lowest = std::min(lowest, lowest_ground(polygon, scene_.bed));
         scene_.log.push_back(
             fmt::format("{}: found {:.6g} m; expected more than the ground's {:.6g} m: nothing meets it",
-                        case_.place(prefix_ + "top"), *barrier.top, lowest));
+                        case_.place(prefix_ + "top"), *barrier.top, lowest_ground(barrier, scene_.bed)));
     }
 
     bool given(const char* name) const { return case_.given(prefix_ + name); }

@@ -221,11 +221,10 @@ private:
         const std::string found = fmt::format("found {} pixels below 0 with {:.4g} m3, such as {:.6g} at {}", count,
                                               below * pixel, depth.values[first], place_text(depth.geometry, first));
         if (below > kMuch * above)
-            throw UserError(
-                fmt::format("{}; expected depths of what is released, 0 or more; where it is after minus before, its "
-                            "sign is the other "
-                            "one, and its deposit is none of the release",
-                            found));
+            throw UserError(fmt::format(
+                "{}; expected depths of what is released, 0 or more; of a later surface minus an earlier one "
+                "reverse the sign, and cut out the deposit",
+                found));
         log_.push_back(fmt::format("{}: {}; they are taken as 0", place("depth"), found));
     }
 

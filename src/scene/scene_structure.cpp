@@ -40,7 +40,8 @@ public:
                           fmt::format("found {:.6g}", number("dilatancy_angle_deg")),
                           fmt::format("expected at most friction_angle_deg = {:.6g}", number("friction_angle_deg")),
                           "give a smaller angle");
-        for (std::size_t n = 0; n < scene_.barriers.size(); ++n) require_box(n);
+        for (const Barrier& barrier : scene_.barriers) require_box(barrier);
+        if (problems_.empty()) remark_widened();
         return structure;
     }
 
@@ -100,45 +101,57 @@ private:
     }
 
     /// Obstacles are boxes along the axes; their height does not count.
-    void require_box(std::size_t n) {
-        const Barrier& barrier = scene_.barriers[n];
-        const std::string table = fmt::format("barrier.{}", n);
+    void require_box(const Barrier& barrier) {
         bool box = barrier.outline.parts.size() == 1 && barrier.outline.parts.front().rings.size() == 1;
         if (box) {
             const std::vector<Vec2>& ring = barrier.outline.parts.front().rings.front();
-            Vec2 low = ring.front(), high = ring.front();
-            for (const Vec2& corner : ring) low = low.cwiseMin(corner), high = high.cwiseMax(corner);
+            const auto [low, high] = bounds_of(barrier);
             const double slack = 1e-6 * (high - low).maxCoeff();
             const auto on = [&](double at, double a, double b) {
                 return std::abs(at - a) <= slack || std::abs(at - b) <= slack;
             };
-            box = ring.size() == 4 && std::all_of(ring.begin(), ring.end(), [&](const Vec2& corner) {
-                      return on(corner.x(), low.x(), high.x()) && on(corner.y(), low.y(), high.y());
-                  });
+            box = ring.size() == 4;
+            for (const Vec2& corner : ring)
+                box = box && on(corner.x(), low.x(), high.x()) && on(corner.y(), low.y(), high.y());
         }
-        if (!box)
-            problems_.add(case_.table_place(table),
-                          fmt::format("found barrier \"{}\" beside material.structure", barrier.name),
-                          "expected an outline that is one rectangle along x and y, the only barrier that structured "
-                          "columns know",
-                          "give such an outline, or raise the elevation model there");
-        else
-            remark_widened(barrier, table);
+        if (box) return;
+        problems_.add(case_.table_place(table_of(barrier)),
+                      fmt::format("found barrier \"{}\" beside material.structure", barrier.name),
+                      "expected an outline that is one rectangle along x and y, the only barrier that structured "
+                      "columns know",
+                      "give such an outline, or raise the elevation model there");
     }
 
-    void remark_widened(const Barrier& barrier, const std::string& table) const {
-        const double cell = scene_.bed.geometry.cell;
-        Vec2 low = barrier.outline.parts.front().rings.front().front(), high = low;
-        for (const Vec2& corner : barrier.outline.parts.front().rings.front())
-            low = low.cwiseMin(corner), high = high.cwiseMax(corner);
+    /// That tells most: with `each` a table has more barriers than one, and theirs is the first.
+    std::string table_of(const Barrier& barrier) const {
+        const auto n = static_cast<std::size_t>(&barrier - scene_.barriers.data());
+        return fmt::format("barrier.{}",
+                           scene_.barriers.size() == static_cast<std::size_t>(case_.count("barrier")) ? n : 0);
+    }
+
+    /// Of the thinnest, for all.
+    void remark_widened() const {
         constexpr double kRoundOff = 1.0 - 1e-9;
-        const double width = (high - low).minCoeff();
-        if (width >= kRoundOff * kBoxCells * cell) return;
-        scene_.log.push_back(fmt::format(
-            "{}: found {:.4g} m, less than {:g} cells of {:.6g} m: structured columns meet a box {:.4g} m wide about "
-            "its "
-            "middle, since they would go through a thinner one; give a smaller grid.cell if that is too wide",
-            case_.place(table + ".outline"), width, kBoxCells, cell, kBoxCells * cell));
+        const double cell = scene_.bed.geometry.cell, least = kBoxCells * cell;
+        std::size_t thin = 0;
+        double thinnest = INFINITY;
+        std::string name;
+        for (const Barrier& barrier : scene_.barriers) {
+            if (is_buried(barrier, scene_.bed)) continue;
+            const BarrierBox box = bounds_of(barrier);
+            const double width = (box.high - box.low).minCoeff();
+            if (width >= kRoundOff * least) continue;
+            ++thin;
+            if (width < thinnest) thinnest = width, name = barrier.name;
+        }
+        if (thin == 0) return;
+        scene_.log.push_back(
+            fmt::format("barriers: found {} of {} thinner than {:g} cells of {:.6g} m, the thinnest \"{}\" with {:.4g} "
+                        "m; structured "
+                        "columns would go through those, and meet boxes {:.4g} m wide about their middles; give a "
+                        "smaller grid.cell "
+                        "if that is too wide",
+                        thin, scene_.barriers.size(), kBoxCells, cell, name, thinnest, least));
     }
 
     const CaseFile& case_;

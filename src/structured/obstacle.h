@@ -1,6 +1,7 @@
 #pragma once
 // Upright obstacles on the plane, as the nodes in them meet them.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -16,12 +17,17 @@ struct Obstacle {
     Vec2 low{-kFar, -kFar}, high{kFar, kFar};  ///< [m]
     double friction = 0.0;                     ///< mu [1]
 
-    /// THEORY (9): the velocity v [m/s] of a node at x [m]. Inside, and no farther than `slack` [m] from the faces,
-    /// nothing goes through the nearest face.
-    Vec2 met(const Vec2& x, const Vec2& v, double slack) const {
-        const double depth[4] = {x.x() - low.x(), high.x() - x.x(), x.y() - low.y(), high.y() - x.y()};
-        const int face = static_cast<int>(std::min_element(depth, depth + 4) - depth);
-        if (!(depth[face] >= -slack)) return v;
+    /// How far a place [m] lies behind each face: the two across x, then the two across y [m]. In the box none is below 0.
+    std::array<double, 4> behind(const Vec2& x) const {
+        return {x.x() - low.x(), high.x() - x.x(), x.y() - low.y(), high.y() - x.y()};
+    }
+    /// How deep it lies in the box; below 0 outside [m].
+    double depth(const Vec2& x) const {
+        const std::array<double, 4> all = behind(x);
+        return *std::min_element(all.begin(), all.end());
+    }
+    /// THEORY (9): the velocity v [m/s] of a node behind a face, through which nothing goes.
+    Vec2 stopped(int face, const Vec2& v) const {
         const int axis = face / 2;
         const double into = face % 2 == 0 ? v[axis] : -v[axis];  // faces point down the axis, then up
         if (into <= 0.0) return v;
@@ -31,6 +37,33 @@ struct Obstacle {
         return left;
     }
 };
+
+/// A face of an obstacle, and how far a place lies behind it [m].
+struct FaceBehind {
+    int face;  ///< as Obstacle::behind has them; below 0 for a place outside, or between other obstacles
+    double depth;
+};
+
+/// The nearest face of the n-th obstacle for a place in it or on it. A face does not count where another obstacle begins
+/// within half a cell behind it, such as the next house of a row. Within both it does: a corner of walls.
+inline FaceBehind nearest_face(const std::vector<Obstacle>& all, std::size_t n, const Vec2& x, double cell) {
+    const double slack = 1e-6 * cell, gap = 0.5 * cell;  // whatever round-off makes of places; what no node is in
+    const std::array<double, 4> behind = all[n].behind(x);
+    FaceBehind nearest{-1, Obstacle::kFar};
+    if (*std::min_element(behind.begin(), behind.end()) < -slack) return nearest;
+    const auto goes_on = [&](int face) {
+        Vec2 beyond = x;
+        beyond[face / 2] = face % 2 == 0 ? all[n].low[face / 2] - gap : all[n].high[face / 2] + gap;
+        for (std::size_t other = 0; other < all.size(); ++other)
+            if (other != n && all[other].depth(beyond) > 0.0 && !(all[other].depth(x) > slack)) return true;
+        return false;
+    };
+    for (int face = 0; face < 4; ++face) {
+        const double depth = behind[static_cast<std::size_t>(face)];
+        if (depth < nearest.depth && !goes_on(face)) nearest = {face, depth};
+    }
+    return nearest;
+}
 
 /// Integral of the quadratic B-spline from far below to t [cells from its node].
 inline double spline_below(double t) {

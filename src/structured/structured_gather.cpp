@@ -158,27 +158,34 @@ bool leaves(StructuredBody& body, Index p, StructuredSums& sums) {
     return true;
 }
 
+/// A column that a step brought into obstacles is put on their nearest face.
+void put_on_face(StructuredBody& body, Index p, double deepest) {
+    StructuredPoints& q = body.points;
+    const GridGeometry& g = body.grid.geometry();
+    for (std::size_t n = 0; n < body.obstacles.size(); ++n) {
+        const Vec2 place(g.x0 + g.cell * q.x[p], g.y0 + g.cell * q.y[p]);
+        const FaceBehind at = nearest_face(body.obstacles, n, place, g.cell);
+        if (at.face < 0 || !(at.depth > 0.0) || at.depth > deepest) continue;
+        const Obstacle& obstacle = body.obstacles[n];
+        const int axis = at.face / 2;
+        const double face = at.face % 2 == 0 ? obstacle.low[axis] : obstacle.high[axis];
+        (axis == 0 ? q.x : q.y)[p] = (face - (axis == 0 ? g.x0 : g.y0)) / g.cell;
+    }
+}
+
 /// Nodes in an obstacle do not move into it, but a column next to it feels those before it too, and creeps on. It ends at
 /// the nearest face. What was released deep within an obstacle stays there.
 void keep_out(StructuredBody& body, Index p, int lanes) {
-    constexpr double kDeepest = 0.5;  // more than a column goes in a step [cells]
-    StructuredPoints& q = body.points;
+    constexpr double kDeepest = 1.0;  // no column goes farther in a step [cells]
+    const StructuredPoints& q = body.points;
     const GridGeometry& g = body.grid.geometry();
-    const double per_cell = 1.0 / g.cell;
-    for (const Obstacle& obstacle : body.obstacles) {
-        const double low[2] = {(obstacle.low.x() - g.x0) * per_cell, (obstacle.low.y() - g.y0) * per_cell},
-                     high[2] = {(obstacle.high.x() - g.x0) * per_cell, (obstacle.high.y() - g.y0) * per_cell};
-        const Double4 x = load(&q.x[p], lanes), y = load(&q.y[p], lanes), none = {};
-        const Double4 deep = min(min(x - low[0], high[0] - x), min(y - low[1], high[1] - y));
-        const Mask4 within = (deep > none) & (deep <= kDeepest);
-        if (!any(within)) continue;
-        for (int n = 0; n < lanes; ++n) {
-            if (!within[n]) continue;
-            Array& along = deep[n] == x[n] - low[0] || deep[n] == high[0] - x[n] ? q.x : q.y;
-            const int axis = &along == &q.x ? 0 : 1;
-            along[p + n] = deep[n] == along[p + n] - low[axis] ? low[axis] : high[axis];
-        }
-    }
+    const Double4 x = g.x0 + g.cell * load(&q.x[p], lanes), y = g.y0 + g.cell * load(&q.y[p], lanes);
+    Mask4 within = {};
+    for (const Obstacle& of : body.obstacles)
+        within |= (x >= of.low.x()) & (x <= of.high.x()) & (y >= of.low.y()) & (y <= of.high.y());
+    if (!any(within)) return;
+    for (int n = 0; n < lanes; ++n)
+        if (within[n]) put_on_face(body, p + n, kDeepest * g.cell);
 }
 
 /// Sums of four columns, and what bounds the next step.

@@ -9,9 +9,6 @@ namespace {
 
 using Moved = StructuredBody::Moved;
 
-/// Of a cell: nodes on a face are in the obstacle, whatever round-off makes of their places.
-constexpr double kOnFace = 1e-6;
-
 double total(double a) { return a; }
 double total(Double4 a) { return sum(a); }
 
@@ -72,7 +69,10 @@ Vec2 stopped(const StructuredBody& body, Index k, int lane, const Vec2& v) {
     const GridGeometry& g = body.grid.geometry();
     const Vec2 place(g.x(k % body.grid.stride() - kTile + lane), g.y(k / body.grid.stride() - kTile));
     Vec2 left = v;
-    for (const Obstacle& obstacle : body.obstacles) left = obstacle.met(place, left, kOnFace * body.grid.cell());
+    for (std::size_t n = 0; n < body.obstacles.size(); ++n) {
+        const FaceBehind at = nearest_face(body.obstacles, n, place, body.grid.cell());
+        if (at.face >= 0) left = body.obstacles[n].stopped(at.face, left);
+    }
     return left;
 }
 FlatOf<double> stopped(const StructuredBody& body, Index k, const FlatOf<double>& v) {
@@ -118,7 +118,7 @@ template <class Real>
 }
 
 /// What grains do at a node whose weight acts already. Over a bend that is by the velocity in the middle of the step.
-/// There the stress of the structure does not count: next to a node's last bit of mass it gives it any speed.
+/// There the stress of the structure does not count: a node with next to no mass gets any speed by it.
 template <class Real, class Law>
 [[gnu::always_inline]] inline GrainForceOf<Real> force_of_grains(const NodeStep<Law>& step, Index k,
                                                                  const GroundOf<Real>& ground,

@@ -10,20 +10,19 @@
 namespace frana {
 namespace {
 
-/// The change of depth over four cells whose water is thin against its fall there leaves half of it at each face. A film
-/// that ends on a slope would be all on its upper side: it stayed, and went on to speed up. THEORY, section 3.
-[[gnu::always_inline]] inline Double4 within_depth(Double4 h, Double4 of_surface, Double4 of_depth) {
+/// The largest change of depth over four cells. Water that is thin against its fall there keeps half of it at each face. A
+/// film that ends on a slope would be all on its upper side. It stayed, and went on to speed up. THEORY, section 3.
+[[gnu::always_inline]] inline Double4 most_change(Double4 h, Double4 of_surface) {
     constexpr double kThin = 1.0 / 8;  // of its fall, from where on it is so
-    const Double4 most = max(h, 2.0 * h - kThin * abs(of_surface));
-    return min(max(of_depth, -most), most);
+    return max(h, 2.0 * h - kThin * abs(of_surface));
 }
 
 /// Changes of depth and surface over four cells. The ground that they make of it lies at each face between the ground of
-/// both cells, give or take an eighth of the depth. Limited by themselves they raise it at a crest to the surface of the
-/// water before that, or put what is left on a crest all on its upper side. At the foot of a slope they lower the surface to
-/// dry ground behind. Nothing would pass, however high it stood, and the slope would go on to speed it up. `before`,
-/// `behind`: the change of the ground from the cell before, and to the one behind. THEORY, section 3.
-[[gnu::always_inline]] inline void keep_ground(Double4 h, Double4 surface, Double4 before, Double4 behind,
+/// both cells, give or take an eighth of the depth. Limited by themselves they raise a crest to the surface of the water
+/// before it. What is left on a crest they put all on its upper side. At the foot of a slope they lower the surface to dry
+/// ground behind. Nothing would pass, however high it stood, and the slope would go on to speed it up. `most`: of the change
+/// of depth. `before`, `behind`: the change of the ground from the cell before, and to the one behind. THEORY, section 3.
+[[gnu::always_inline]] inline void keep_ground(Double4 h, Double4 surface, Double4 most, Double4 before, Double4 behind,
                                                Double4& of_depth, Double4& of_surface) {
     constexpr double kRoundOff = 1e-13;  // of the elevation; a lake on rough ground is left to the last bit
     constexpr double kOfDepth = 0.25;    // over the cell; leaves resolved crests under water to second order
@@ -34,7 +33,7 @@ namespace {
     if (!any((made < max(falls, falls_on)) | (made > min(rises, rises_on)))) return;
     // Too high at a face: it is lowered under the surface.
     const Mask4 high = (made < falls) | (made > rises_on);
-    const Double4 lowered = min(max(made, falls), rises_on), depth = min(max(of_surface - lowered, -2.0 * h), 2.0 * h);
+    const Double4 lowered = min(max(made, falls), rises_on), depth = min(max(of_surface - lowered, -most), most);
     of_depth = select(high, depth, of_depth), of_surface = select(high, depth + lowered, of_surface);
     // Too low: it is raised with what is on it.
     const Double4 left = of_surface - of_depth;
@@ -54,10 +53,11 @@ void find_slopes(const WaterBlock& block, const double* along, const double* acr
         const Double4 h = load(block.depth + k), surface = load(block.surface + k), ground = surface - h;
         const Double4 per = select(h > 0.0, 0.5 / h, Double4{});
         Double4 of_depth = change(block.depth, k), of_surface = change(block.surface, k);
-        of_depth = within_depth(h, of_surface, of_depth);
+        const Double4 most = most_change(h, of_surface);
+        of_depth = min(max(of_depth, -most), most);
         const Double4 before = ground - (load(block.surface + k - step) - load(block.depth + k - step));
         const Double4 behind = (load(block.surface + k + step) - load(block.depth + k + step)) - ground;
-        keep_ground(h, surface, before, behind, of_depth, of_surface);
+        keep_ground(h, surface, most, before, behind, of_depth, of_surface);
         store(to.depth + k, of_depth), store(to.surface + k, of_surface);
         store(to.along + k, per * change(along, k)), store(to.across + k, per * change(across, k));
     }
