@@ -53,6 +53,7 @@ double* permuted(Field& field, const std::int32_t* order, Index kept, double* sp
 #pragma omp barrier
     if constexpr (changes) return of;
     for_part_of_thread(kept, [&](Index first, Index end) {
+        if (end == first) return;  // no copy of nothing, which may be nowhere
         std::memcpy(of + first, room + static_cast<std::size_t>(first) * sizeof(Number),
                     static_cast<std::size_t>(end - first) * sizeof(Number));
     });
