@@ -50,7 +50,8 @@ struct BarrierLoads {
 class Probe {
 public:
     virtual ~Probe() = default;
-    virtual Sample at(const Vec2& point) const = 0;  ///< bilinear between nodes; beyond them the nearest
+    /// Bilinear between nodes, velocity weighted by depth; beyond them the nearest.
+    virtual Sample at(const Vec2& point) const = 0;
     /// nullptr where nothing measures loads.
     virtual const BarrierLoads* loads() const { return nullptr; }
     /// What passed each section of the scene since the start, by the paths of the particles [m3]. None where that is
