@@ -207,7 +207,10 @@ TEST_CASE("What has become bed is taken up again to the last crumb: the bed is t
     for (double& vx : still.flow.columns.vx) vx = 1.0;
     still.transfer->deposit(still.flow, 0.1);
     double taken = 0.0;
-    for (int n = 0; n < 60; ++n) taken += still.erosion.exchange(still.flow, 1.0).taken;
+    for (int n = 0; n < 60; ++n) {
+        still.erosion.wait(1.0);
+        taken += still.erosion.exchange(still.flow, 1.0, 0.0).taken;
+    }
     const Status::Bed bed = still.erosion.status();
     CHECK(taken == Approx(bed.deposited).epsilon(1e-11));
     CHECK(std::abs(bed.mass - (bed.deposited - bed.eroded)) <= 1e-13 * bed.deposited);

@@ -120,7 +120,8 @@ TEST_CASE("What a flow took up before a line passes it: its volume to round-off"
 }
 
 // A particle gives the bed of nodes around it, a cell and a half and its own size away, and takes from them. Those beyond a line
-// get from both sides of it. What does not cancel is 0.5 % of what the bed there gained and lost.
+// get from both sides of it. What does not cancel is 0.5 % of what the bed there gained and lost when each step has an exchange.
+// It is 1.2 % when one stands for three steps.
 TEST_CASE("What passed a line is what flow and bed beyond it gained, but for the bed that they share on the line",
           "[sections][erosion][deposition]") {
     Scene scene = gully();
@@ -137,7 +138,7 @@ TEST_CASE("What passed a line is what flow and bed beyond it gained, but for the
         run_to(run, until);
         bed = bed_beyond(run);
         CAPTURE(until, bed.on_line, bed.gained);
-        CHECK(run.passed()[0] == Approx(volume_beyond(run) + bed.gained).margin(0.01 * bed.on_line));
+        CHECK(run.passed()[0] == Approx(volume_beyond(run) + bed.gained).margin(0.02 * bed.on_line));
     }
     CHECK(run.passed()[0] > whole);                                       // with what it took up on its way
     CHECK(std::abs(run.passed()[0] - volume_beyond(run)) > 0.5 * whole);  // nearly all has become bed

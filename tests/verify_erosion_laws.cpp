@@ -1,5 +1,7 @@
 // Erosion laws without a problem of their own in `frana verify`, against closed forms of a slab on a plane.
 #include <cmath>
+#include <functional>
+#include <vector>
 
 #include "analytic_scene.h"
 #include "base/constants.h"
@@ -82,6 +84,56 @@ TEST_CASE("A slab that takes its bed by the mechanical law", "[erosion][verify]"
     const State found = middle_of(run, scene.particles);
     CHECK(found[0] == Approx(h).epsilon(1e-3));
     CHECK(found[1] == Approx(u).epsilon(1e-3));
+}
+
+// In the middle of the slab nothing depends on the cell: what is left is of second order in the step.
+TEST_CASE("Each law's growth of a slab is of second order in time", "[erosion][verify]") {
+    const double h0 = 1.5, u0 = 8.0, end = 4.0, beta = 1.2, c = kMu * kGravity * std::cos(kSlope);
+    const double a = kGravity * std::sin(kSlope) - c;
+    struct Case {
+        const char* name;
+        ErosionLaw law;
+        std::function<double(double h, double u)> share_rate;  ///< of the mass, that is taken [1/s]
+    };
+    const double mu_b = 0.15, force = kGravity * std::cos(kSlope) * (kMu - beta * mu_b) * (1.0 + beta);
+    const auto growth = [&](double share) {
+        return Case{"growth", erosion::Growth{share}, [=](double, double u) { return share * u; }};
+    };
+    const auto energy = [&](double needed) {
+        return Case{"energy", erosion::Energy{needed}, [=](double, double u) { return c * u / needed; }};
+    };
+    const auto mechanical = [&](double nu) {
+        return Case{"mechanical", erosion::Mechanical{mu_b, nu},
+                    [=](double h, double) { return beta * nu * std::sqrt(force / h); }};
+    };
+    const Case jump{"jump", erosion::Jump{0.0}, [=](double, double u) { return beta * c / u; }};
+    // Those that grow fast exchange in each step, the others in every third.
+    const std::vector<Case> cases = {growth(0.05), energy(50.0), mechanical(0.3), jump,
+                                     growth(5e-4), energy(5e3),  mechanical(3e-3)};
+    for (const Case& one : cases) {
+        const State exact = verify::integrate(
+            [&](double, const State& y) {
+                const double rate = one.share_rate(y[0], y[1]);
+                return State{rate * y[0], a - rate * y[1]};
+            },
+            0.0, end, State{h0, u0}, 1e-3);
+        REQUIRE(exact[0] > 1.01 * h0);
+        std::vector<State> errors;
+        for (const double cfl : {0.5, 0.25, 0.125}) {
+            Scene scene = slab(h0, u0, -1e9, 10.0);
+            scene.erodible->law = one.law;
+            scene.scheme.cfl = cfl;
+            DepthAveraged run(scene);
+            run_to(run, end);
+            const State found = middle_of(run, scene.particles);
+            errors.push_back({found[0] / exact[0] - 1.0, found[1] / exact[1] - 1.0});
+        }
+        for (std::size_t n = 0; n < 2; ++n) {
+            CAPTURE(one.name, n, errors[0][n], errors[1][n], errors[2][n]);
+            CHECK(std::abs(errors[1][n]) > 2.8 * std::abs(errors[2][n]));  // the second order has 4, the first 2
+            CHECK(std::abs(errors[2][n]) < 2e-3);
+        }
+    }
 }
 
 TEST_CASE("A bed whose friction holds more than the flow's stress is not taken mechanically", "[erosion]") {

@@ -165,7 +165,9 @@ void DepthAveraged::advance(double until) {
     const bool rows = feed_ && feed_->due(status_.after(dt, until));
     // Rows wait until points are sorted anyway. A sort of its own for each would cost a fifth of a step.
     const bool adapts = due || drift_ > drift_before_carry(flow_.scheme) || (rows && flow_.columns.count() == 0);
-    const bool fed = rows && adapts, exchanges = erosion_ && erosion_->exchanges(), apart = adapts || exchanges;
+    const bool fed = rows && adapts;
+    const bool settles = erosion_ && erosion_->deposits(), erodes = erosion_ && exchange_is_due(dt, until, adapts);
+    const bool apart = adapts || settles || erodes;
     if (passages_) timed_("sections", [&] { passages_->note(flow_); });
     PointSums points =
         apart ? timed_("gather", [&] { return transfer_->gather(flow_, dt); })
@@ -176,9 +178,10 @@ void DepthAveraged::advance(double until) {
     status_.tick(dt, until);
     // Dropped, not sorted: nodes have been cleared for the present tiles, and stay so until the next deposit.
     if (points.left_count > 0) timed_("sort", [&] { sorter_.drop(flow_.columns, transfer_->gone(), flow_.active); });
-    if (exchanges) timed_("erosion", [&] { settle(); });
+    if (settles) timed_("erosion", [&] { settle(); });
     if (adapts) adapt_points(due, fed);
-    if (exchanges) timed_("erosion", [&] { erode(dt), detrain(dt); });
+    if (erodes) timed_("erosion", [&] { erode(dt, until - status_.time); });
+    if (settles) timed_("erosion", [&] { detrain(dt); });
     if (apart) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_velocity_dt); });
     flow_.windows.forget();
     arrive(points);
@@ -270,10 +273,15 @@ void DepthAveraged::adapt_points(bool due, bool fed) {
     drift_ = 0.0;
 }
 
-/// Points that have arrived take up bed; what they deposit then has it.
-void DepthAveraged::erode(double dt) {
+bool DepthAveraged::exchange_is_due(double dt, double until, bool adapts) {
+    erosion_->wait(dt);
+    return erosion_->is_due(dt, adapts, !(status_.after(dt, until) < until));
+}
+
+/// Points that have arrived take up bed; what they deposit then has it. In `left` [s] the state is wanted.
+void DepthAveraged::erode(double dt, double left) {
     if (passages_) passages_->note(flow_);
-    const ExchangeSums sums = erosion_->exchange(flow_, dt);
+    const ExchangeSums sums = erosion_->exchange(flow_, dt, left);
     if (passages_) passages_->count_moved(flow_);
     status_.bed = erosion_->status();
     drift_ += sums.max_shift;

@@ -117,7 +117,8 @@ private:
     void serialize_peaks(Archive& archive);
     void serialize_support(Archive& archive);
     void adapt_points(bool due, bool fed);
-    void erode(double dt);
+    bool exchange_is_due(double dt, double until, bool adapts);
+    void erode(double dt, double left);
     void detrain(double dt);
     void settle();
     void note_buried();

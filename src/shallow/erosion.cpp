@@ -81,6 +81,15 @@ Double4 decelerations(const Law& law, const BedStateOf<Double4>& bed, Double4 sp
     return sum;
 }
 
+/// 1/sqrt(1 + x) of four x >= 0, where nothing else depends on it: a series that is right to round-off for what a step
+/// gains.
+[[gnu::always_inline]] inline Double4 slowed_by_half(Double4 x) {
+    constexpr double kSeries = 2e-3;  // the next term is 3/16 of a billionth of a billionth
+    if (any(x > kSeries)) return sqrt(1.0 / (1.0 + x));
+    constexpr double a[] = {-1.0 / 2, 3.0 / 8, -5.0 / 16, 35.0 / 128, -63.0 / 256};
+    return 1.0 + x * (a[0] + x * (a[1] + x * (a[2] + x * (a[3] + x * a[4]))));
+}
+
 /// Shares of their masses that four points demand in a step. `middle`: to second order, for the middle of the step.
 /// `per_thickness`: of one over the flow's thickness [1/m].
 template <class Law>
@@ -236,26 +245,50 @@ Real Erosion::can_give(Index k) const {
     return select(read<Real>(&raised_[k]) > none, none, all);
 }
 
-ExchangeSums Erosion::exchange(Flow& flow, double dt) {
+/// An exchange stands for three steps or so, of which the second has its velocities. Where it would take more than a share of
+/// the flow that gains, one comes in each step.
+constexpr double kMostSteps = 2.5, kMostAhead = 1.5;
+constexpr double kMostShare = 0.01;
+
+bool Erosion::is_due(double dt, bool adapts, bool last) const {
+    return takes_ && (adapts || last || waited_ > kMostSteps * dt || share_rate_ * (waited_ + dt) > kMostShare);
+}
+
+/// THEORY.md, section 18: the middle of what it takes at once is the middle of the last step, to which velocities belong.
+Erosion::Stretch Erosion::next_stretch(double dt, double left) {
+    const double owed = waited_ - ahead_, centred = owed - dt;
+    const double steady =
+        share_rate_ * 3.0 * dt > kMostShare ? 0.0 : dt;  // or stretches would go on being long and short
+    waited_ = 0.0, ahead_ = std::max({0.0, -owed, std::min({0.5 * (centred + steady), kMostAhead * dt, left})});
+    return {owed + ahead_, owed - ahead_};
+}
+
+ExchangeSums Erosion::exchange(Flow& flow, double dt, double left) {
     ExchangeSums all;
-    if (!takes_ || !(dt > 0.0) || !choose(flow)) return all;
+    const Stretch stretch = next_stretch(dt, left);
+    if (!takes_ || !(stretch.whole > 0.0)) return all;
+    share_rate_ = 0.0;
+    if (!choose(flow)) return all;
     make_room(flow);
     flow.windows.start(flow.columns.count(), flow.active.count());  // for the deposit as well
-    find_demand(flow, dt);
+    find_demand(flow, stretch);
     scarce_ = find_shares(flow);
     if (scarce_) share_out(flow);
     flow.columns.with_real([&](auto real) { for_each_eroding(flow, [&](Index n) { grow<decltype(real)>(flow, n); }); });
     lower(flow);
     CompensatedSum taken;
+    double gained = 0.0;
     for (Index n = 0; n < flow.active.count(); ++n) {
         if (!eroding_[static_cast<std::size_t>(n)]) continue;
         const ExchangeSums& of = sums_[static_cast<std::size_t>(n)];
         taken.add(of.taken), all.px += of.px, all.py += of.py, all.lost += of.lost;
+        gained += of.gained;
         all.max_shift = std::max(all.max_shift, of.max_shift);
     }
     unmark_raised(flow);
     for (const Index tile : nodes_) energy_.add(tile_energy_[tile]);
     all.taken = taken.value();
+    if (gained > 0.0) share_rate_ = all.taken / (gained * stretch.whole);
     eroded_.add(all.taken);
     status_changed();
     return all;
@@ -290,7 +323,7 @@ void Erosion::make_room(const Flow& flow) {
 }
 
 /// THEORY (72): the demand of each point, and their sum on the nodes.
-void Erosion::find_demand(Flow& flow, double dt) {
+void Erosion::find_demand(Flow& flow, const Stretch& stretch) {
     flow.columns.with_real([&](auto real) {
         using Real = decltype(real);
         for_each_eroding_in_turn(flow, [&](Index n) {
@@ -298,8 +331,8 @@ void Erosion::find_demand(Flow& flow, double dt) {
                 using Law = std::decay_t<decltype(law)>;
                 using Under = std::decay_t<decltype(friction)>;
                 if constexpr (Law::kSeesEroded || Law::kSeesLeft || Law::kSeesStress)
-                    if (deposits_) return demand_of_tile<Law, Under, Real, true>(flow, n, dt, law, friction);
-                demand_of_tile<Law, Under, Real, false>(flow, n, dt, law, friction);
+                    if (deposits_) return demand_of_tile<Law, Under, Real, true>(flow, n, stretch, law, friction);
+                demand_of_tile<Law, Under, Real, false>(flow, n, stretch, law, friction);
             };
             const auto demand_of = [&](const auto& law) {
                 if constexpr (!std::decay_t<decltype(law)>::kSeesStress)
@@ -365,8 +398,9 @@ Double4 strengths(const Law& law, const BedStateOf<Double4>& bed, Double4 speed,
 /// Velocities are those of the step's momentum over the mass before it (leapfrog). In the middle of the step, where the
 /// way and the law are taken, half of the gain shares it. Such points have come too far, and are set back.
 template <class Law, class Friction, class Real, bool kFresh>
-void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, const Friction& friction) {
+void Erosion::demand_of_tile(Flow& flow, Index n, const Stretch& stretch, const Law& law, const Friction& friction) {
     Columns& c = flow.columns;
+    const double dt = stretch.whole;
     const Carried<Real>& held = c.carried<Real>();
     constexpr bool kFeels = !std::is_same_v<Friction, Unfelt>;
     const double slowest = std::max(kSlowest, slowest_);
@@ -383,7 +417,7 @@ void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, con
         const Double4 u = select(moves, on_map, one), ux = select(moves, vx, one), uy = select(moves, vy, none);
         const Double4 deep = select(moves, depth, one);
         // A curved bed changes the weight alone, which only friction and laws of it use.
-        const GroundOfFour ground(flow, kFeels && curved_, means, ux, uy, deep);
+        GroundOfFour ground(flow, kFeels && curved_, means, ux, uy, deep);
         erosion::StateOf<Double4> state;
         state.density = flow.density, state.bed_density = density_, state.dt = dt;
         state.thickness = ground.below.thickness;
@@ -393,7 +427,8 @@ void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, con
         const Double4 per_thickness = one / state.thickness, braked_share = dt / u;
         Double4 at_middle = one, gain = none, brake = none;  // the speed in the middle, over that at hand
         for (const bool middle : {true, false}) {
-            if (!middle) at_middle = sqrt(speeds_left(gain, brake * braked_share));
+            if (!middle) state.thickness = ground.below.thickness *= 1.0 + 0.5 * gain;
+            if (!middle) at_middle = kFeels ? sqrt(speeds_left(gain, brake * braked_share)) : slowed_by_half(gain);
             state.speed = at_middle * ground.speed;
             if constexpr (kFeels) {
                 brake = decelerations(below, ground.below, at_middle * u);
@@ -405,8 +440,9 @@ void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, con
         }
         store(&wanted_[p], gain * mass, lanes);
         store(&speed_[p], ground.speed, lanes);
-        if (momentum_ > 0.0) store(&braked_[p], brake * braked_share, lanes);
-        const Double4 back = (1.0 - at_middle) * dt;
+        if constexpr (kFeels)
+            if (momentum_ > 0.0) store(&braked_[p], brake * braked_share, lanes);
+        const Double4 back = (1.0 - at_middle) * stretch.excess;
         farthest = max(farthest, set_back(flow, p, lanes, gain > none, back * vx, back * vy));
     });
     sums_[static_cast<std::size_t>(n)].max_shift = largest(farthest);
@@ -434,14 +470,15 @@ Double4 Erosion::speeds_left(Double4 gain, Double4 braked) const {
 namespace {
 
 /// The window of four points of the n-th tile, not next to the grid's sides; nullptr where sub-points are too far away.
+/// `room`: for one that is not kept.
 template <class Real>
-const WindowOfFour* window_of(Flow& flow, Index p, Index n, int lanes) {
+const WindowOfFour* window_of(Flow& flow, Index p, Index n, int lanes, WindowOfFour& room) {
     if (const WindowOfFour* found = flow.windows.find(p, n)) return found;
     const Columns& c = flow.columns;
     const Carried<Real>& held = c.carried<Real>();
     const Domains r{load(&held.r1x[p], lanes), load(&held.r1y[p], lanes), load(&held.r2x[p], lanes),
                     load(&held.r2y[p], lanes)};
-    WindowOfFour& window = flow.windows.at(p, n);
+    WindowOfFour& window = flow.windows.keeps() ? flow.windows.at(p, n) : room;
     if (!find_window(flow, load(&c.x[p], lanes), load(&c.y[p], lanes), r, window)) return nullptr;
     flow.windows.know(p, n, true);
     return &window;
@@ -457,12 +494,13 @@ void Erosion::spread(Flow& flow, Index n, const Array& masses, LazyArray<double>
     StencilMarks marks = flow.marks_of(flow.active.tile[n]);
     const bool at_side = !flow.walls && near_side(flow.grid, flow.active.tile[n]);
     const Index stride = flow.grid.stride();
+    WindowOfFour room;
     for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
         const Double4 m = load(&masses[p], lanes), none = {};
         if (!any(m > none)) return;
         const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes);
         marks.mark(floor_positive(x + (kTile - 0.5)), floor_positive(y + (kTile - 0.5)), lanes);
-        const WindowOfFour* const window = at_side ? nullptr : window_of<Real>(flow, p, n, lanes);
+        const WindowOfFour* const window = at_side ? nullptr : window_of<Real>(flow, p, n, lanes, room);
         if (window) return spread_window(stride, into.data(), lanes, m, *window);
         for (Index q = p; q < p + lanes; ++q)
             spread_column<Quadratic>(flow, into.data(), {c.x[q], c.y[q], masses[q]}, edges_of(held, q));
@@ -561,12 +599,13 @@ void for_each_wanting(Flow& flow, Index n, const Array& wanted, const LazyArray<
     const Carried<Real>& held = c.carried<Real>();
     const bool at_side = !flow.walls && near_side(flow.grid, flow.active.tile[n]);
     const Index stride = flow.grid.stride();
+    WindowOfFour room;
     for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
         const Double4 none = {};
         if (!any(load(&wanted[p], lanes) > none)) return;
         const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes);
         const bool alike = !at_side && all_usual(flow, share, usual, x, y, lanes);
-        const WindowOfFour* const window = alike || at_side ? nullptr : window_of<Real>(flow, p, n, lanes);
+        const WindowOfFour* const window = alike || at_side ? nullptr : window_of<Real>(flow, p, n, lanes, room);
         const auto number = [&](Index q, int lane) {
             if (alike) return usual;
             if (!window) return of_point(q, edges_of(held, q));
@@ -638,7 +677,7 @@ template <class Real>
 void Erosion::grow(Flow& flow, Index n) {
     Columns& c = flow.columns;
     Carried<Real>& held = c.carried<Real>();
-    Double4 taken = {}, px = {}, py = {}, lost = {};
+    Double4 taken = {}, gained = {}, px = {}, py = {}, lost = {};
     for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
         const Double4 gain = load(&wanted_[p], lanes), mass = load(&c.mass[p], lanes), none = {}, one = all(1.0);
         const Mask4 grows = gain > none;
@@ -652,11 +691,12 @@ void Erosion::grow(Flow& flow, Index n) {
         const Double4 now = mass + gain, speed = load(&speed_[p], lanes);
         store(&c.mass[p], now, lanes);
         taken += now - mass;
+        gained += select(grows, mass, none);
         px += now * load(&held.vx[p], lanes) - mass * vx, py += now * load(&held.vy[p], lanes) - mass * vy;
         lost += select(grows, 0.5 * mass * speed * speed * (1.0 - grown * factor * factor), none);
     });
     ExchangeSums& sums = sums_[static_cast<std::size_t>(n)];
-    sums.taken = sum(taken), sums.px = sum(px), sums.py = sum(py), sums.lost = sum(lost);
+    sums.taken = sum(taken), sums.gained = sum(gained), sums.px = sum(px), sums.py = sum(py), sums.lost = sum(lost);
 }
 
 /// The bed loses what the points gained.

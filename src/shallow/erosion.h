@@ -5,6 +5,7 @@
 // Points have the demand, nodes the supply. So a point gets the share of its demand that the poorest of its nodes can
 // give to all demands. What nodes have left over goes to the points with unmet demand. Where the supply lasts, each
 // node loses what the points that gain deposit there. The surface of flow and bed does not move.
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -22,6 +23,7 @@ class MeansOfFour;
 /// What an exchange changed, of all points and nodes.
 struct ExchangeSums {
     double taken = 0.0;         ///< [kg]
+    double gained = 0.0;        ///< mass before it, of the points that gained [kg]
     double px = 0.0, py = 0.0;  ///< momentum that came along [kg m/s]
     double lost = 0.0;          ///< kinetic energy that sharing it lost [J]
     double max_shift = 0.0;     ///< that a point was set back [cells]
@@ -34,8 +36,14 @@ public:
     /// Of a scene whose bed is erodible, or rock on which material is left behind, or out of which releases are cut.
     Erosion(const Scene& scene, Flow& flow);
 
-    /// Points gain, the bed loses, in a step of `dt` [s]; after the gather and the sort, before the deposit.
-    ExchangeSums exchange(Flow& flow, double dt);
+    /// A step of `dt` [s] begins.
+    void wait(double dt) { waited_ += dt; }
+    /// Whether this step ends with an exchange. `adapts`: its points are sorted before they are deposited. `last`: the
+    /// state after it is wanted.
+    bool is_due(double dt, bool adapts, bool last) const;
+    /// Points gain, the bed loses; after the gather and the sort, before the deposit. In one step of `dt`, for all that
+    /// waited, and some that follow. `left`: until the state is wanted [s].
+    ExchangeSums exchange(Flow& flow, double dt, double left);
     /// In the step that `now` has ended, points that have been at rest for long enough become bed. Returns what the
     /// flow got by it, below zero, or nothing where none did. After the gather, before anything comes in or points are
     /// sorted. The caller drops those marked in gone().
@@ -48,8 +56,6 @@ public:
     /// A release that stands in the bed goes: the bed falls, and its slopes and curvature follow at once. What is loose
     /// below it can be taken from now on. The caller wakes what sleeps.
     void cut(Flow& flow, const std::vector<ScarNode>& scar);
-    /// Points can gain from the bed, or become bed; otherwise releases are cut out of it, and no more.
-    bool exchanges() const { return takes_ || deposits_; }
     /// The bed's numbers of a status.
     Status::Bed status() const;
 
@@ -74,9 +80,16 @@ public:
 
 private:
     struct SharedNode;
+    /// Time that an exchange stands for [s].
+    struct Stretch {
+        double whole;  ///< all of it
+        double
+            excess;  ///< for so long points were too fast without what they gain; less the time that they are too slow
+    };
+    Stretch next_stretch(double dt, double left);
     Erosion(const Scene& scene, const ErodibleBed& bed, Flow& flow);
     template <class Law, class Friction, class Real, bool kFresh>
-    void demand_of_tile(Flow& flow, Index n, double dt, const Law& law, const Friction& friction);
+    void demand_of_tile(Flow& flow, Index n, const Stretch& stretch, const Law& law, const Friction& friction);
     template <class Law, bool kFresh>
     void see_layer(const MeansOfFour& means, Double4 cosine, erosion::StateOf<Double4>& state) const;
     template <class Real>
@@ -119,7 +132,7 @@ private:
     void serialize_deposition(Archive& archive, const Flow& flow);
     bool choose(const Flow& flow);
     void make_room(const Flow& flow);
-    void find_demand(Flow& flow, double dt);
+    void find_demand(Flow& flow, const Stretch& stretch);
     bool find_shares(Flow& flow);
     void share_out(Flow& flow);
     void lower(Flow& flow);
@@ -197,6 +210,10 @@ private:
     Array braked_;                       ///< share of the speed that friction takes in the step [1]
     CompensatedSum eroded_, deposited_, energy_;
     double initial_mass_ = 0.0, mass_ = 0.0, deepest_ = 0.0;
+    double waited_ = 0.0;  ///< since the last exchange [s]
+    double ahead_ = 0.0;   ///< the last exchange stands for so much time that followed it [s]
+    double share_rate_ =
+        std::numeric_limits<double>::infinity();  ///< what it took of those that gained, of their mass [1/s]
 };
 
 template <class Body>

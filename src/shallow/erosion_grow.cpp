@@ -24,6 +24,7 @@ void Erosion::take_over(const Erosion& from, const Flow& old, Flow& flow, Index 
     }
     eroded_ = from.eroded_, deposited_ = from.deposited_, energy_ = from.energy_;
     peak_mean_speed_ = from.peak_mean_speed_;
+    waited_ = from.waited_, ahead_ = from.ahead_, share_rate_ = from.share_rate_;
     status_changed();
     if (rest_time_) clocks_.take_over(from.clocks_, old.grid, flow.grid, east, north);
     if (evolves_) bend_taken_over(from, flow, nodes, tiles);

@@ -69,6 +69,7 @@ void Erosion::serialize(Archive& archive, Flow& flow, const std::vector<Index>& 
     }
     const auto eroded = eroded_.parts(), energy = energy_.parts();
     archive.numbers("sums", {eroded[0], eroded[1], energy[0], energy[1]});
+    archive.numbers("exchange", {&waited_, &ahead_, &share_rate_});
     if (deposits_) serialize_deposition(archive, flow);
     if (!archive.loading()) return;
     for (const Index tile : tiles) {

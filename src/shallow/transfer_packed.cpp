@@ -198,7 +198,7 @@ private:
         for_each_four(first, end, [&](Index p, int lanes) {
             deposit_four(flow, p, lanes, internal_force[(p - first) / 4], marks, sums);
         });
-        const bool some_known = flow.windows.any_known();
+        const bool some_known = flow.windows.keeps();
         for_each_four(first, end, [&](Index p, int lanes) {
             const WindowOfFour* const window = some_known ? flow.windows.find(p, n) : nullptr;
             if (window)

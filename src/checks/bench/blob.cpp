@@ -62,6 +62,27 @@ Raster bed_of(const Blob& blob, Index nodes, Index centre) {
     return bed;
 }
 
+/// So little that the flow stays as it is without.
+ErodibleBed loose_ground(const Raster& bed) {
+    ErodibleBed loose;
+    loose.depth = Raster::filled(bed.geometry, 1.0);
+    loose.law = erosion::Growth{1e-5};
+    return loose;
+}
+
+std::shared_ptr<const Friction> striped(const bed::Voellmy& law, const Raster& bed) {
+    constexpr Index kStripe = 10;  // [cells]
+    std::vector<bed::Voellmy> of_nodes;
+    of_nodes.reserve(static_cast<std::size_t>(bed.geometry.size()));
+    for (Index j = 0; j < bed.geometry.ny; ++j)
+        for (Index i = 0; i < bed.geometry.nx; ++i)
+            of_nodes.push_back({law.mu * (i / kStripe % 2 == 0 ? 1.0 : 1.01), law.xi});
+    Friction friction;
+    friction.laws = bed::law_map(of_nodes);
+    friction.keys = {"mu"};
+    return std::make_shared<const Friction>(std::move(friction));
+}
+
 }  // namespace
 
 Scene blob_scene(const Blob& blob) {
@@ -74,7 +95,10 @@ Scene blob_scene(const Blob& blob) {
     Scene scene;
     scene.bed = bed_of(blob, nodes, centre);
     scene.density = 1291.0;
-    if (blob.friction) scene.bed_law = bed::Voellmy{0.2, 500.0};
+    const bed::Voellmy voellmy{0.2, 500.0};
+    if (blob.friction) scene.bed_law = voellmy;
+    if (blob.zones) scene.friction = striped(voellmy, scene.bed);
+    if (blob.erodes) scene.erodible = loose_ground(scene.bed);
     if (blob.rheology) scene.rheology = rheology::Bingham{2000.0, 50.0};
     scene.scheme.sleep = blob.sleeps;
     if (blob.single) scene.scheme.precision = Precision::single;

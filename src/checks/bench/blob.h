@@ -13,6 +13,8 @@ struct Blob {
     double resting = 0.0;      ///< share of the points, those behind a line across the blob, that start at rest
     bool sleeps = true;        ///< scheme.sleep
     bool single = false;       ///< scheme.precision = "float"
+    bool erodes = false;       ///< 1 m of loose ground, of which the growth law takes a little
+    bool zones = false;        ///< two bed laws in stripes of ten cells, of nearly the same friction
 };
 
 /// Cells of 5 m, up to 4 m of material, 8 m/s downhill and up to 3 m/s outwards. The blob stands on the same tiles of

@@ -46,6 +46,21 @@ Group with_and_without(Index particles) {
     return group;
 }
 
+/// Loose ground below the flow, and friction by zones. All have the steps that loose ground needs.
+Group with_ground(Index particles) {
+    Blob plain;
+    plain.particles = particles;
+    Blob loose = plain, zones = plain;
+    loose.erodes = zones.zones = true;
+    Group group;
+    group.rounds = 2;
+    group.add("depth_averaged_rock", plain);
+    group.add("depth_averaged_erodible", loose);
+    group.add("depth_averaged_zones", zones);
+    for (Scene& scene : group.scenes) scene.scheme.cfl = 0.5;
+    return group;
+}
+
 Group asleep_and_awake(Index particles) {
     Blob asleep;
     asleep.particles = particles;
@@ -176,6 +191,7 @@ Report run(const Options& wanted, const std::function<void(const std::string&)>&
     }
     const Index reference = reference_particles(options);
     time_in_turns(report, with_and_without(reference), say);
+    time_in_turns(report, with_ground(reference), say);
     time_in_turns(report, asleep_and_awake(reference), say);
     if (!options.quick || reference < kReference)
         time_in_turns(report, tight_and_wide(reference >= kReference ? kWideParticles : reference), say);
