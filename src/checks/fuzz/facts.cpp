@@ -169,7 +169,7 @@ void learn_late(const Scene& scene, Facts& facts) {
 /// A bed that sinks may become steeper, and bends that no Hessian of the start has.
 void learn_erodible(const ErodibleBed& bed, const Flow& flow, Facts& facts) {
     facts.erodes = true;
-    facts.energy_law = false;
+    facts.bed_energy = facts.energy_law, facts.energy_law = false;
     const double deepest = *std::max_element(bed.depth.values.begin(), bed.depth.values.end());
     if (bed.evolves) facts.loose = deepest;
     // What swells, or comes from ground that stays, lifts the surface.
@@ -182,7 +182,7 @@ void learn_erodible(const ErodibleBed& bed, const Flow& flow, Facts& facts) {
 /// A bed that falls where a release goes becomes as steep as its edge.
 void learn_scars(const Scene& scene, const Flow& flow, Facts& facts) {
     if (!scene.cuts_later()) return;
-    facts.energy_law = false;
+    facts.bed_energy = facts.energy_law = false;
     double deepest = 0.0;  // where all of them lie on one another
     for (const LateRelease& release : scene.late) {
         double depth = 0.0;
@@ -197,7 +197,7 @@ void learn_scars(const Scene& scene, const Flow& flow, Facts& facts) {
 /// A bed that rises may become as steep as a deposit's own margin, and later flow falls from it.
 void learn_deposition(const Flow& flow, Facts& facts) {
     facts.erodes = true;
-    facts.energy_law = false;
+    facts.bed_energy = facts.bed_energy || facts.energy_law, facts.energy_law = false;
     if (!facts.steep) return;
     facts.steepest += 2.0 * facts.release_depth / flow.cell;
     facts.stretch = std::hypot(1.0, facts.steepest);

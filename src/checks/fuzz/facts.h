@@ -19,6 +19,7 @@ struct Facts {
     /// against the radius of curvature (whose pressure is none of gravity). Elsewhere a path along a bent bed changes
     /// its speed along the bed. The factor is `stretch` = sqrt(1 + B^2) between level and steepest.
     bool energy_law = true;
+    bool bed_energy = false;  ///< it has one but for what it exchanges with the bed, whose energy is recorded
     double stretch = 1.0;
     double release_depth = 0.0;   ///< largest of the release; nodes have it averaged over a cell and more [m]
     double release_energy = 0.0;  ///< that its depth alone could set free [J]

@@ -165,11 +165,12 @@ std::optional<Violation> Watch::momentum(const Snapshot& state) {
 double Watch::slope_uphill() const { return std::min(facts_.steepest, deepest_ / facts_.cell); }
 
 std::optional<Violation> Watch::energy(const Snapshot& state) {
-    if (!facts_.energy_law || (facts_.linear && !facts_.claims.resolved)) return std::nullopt;
+    if (!(facts_.energy_law || facts_.bed_energy) || (facts_.linear && !facts_.claims.resolved)) return std::nullopt;
     if (facts_.turn * facts_.turn > kEnergyShare || facts_.virtual_mass) return std::nullopt;
     const Status &first = start_.now, &now = state.now;
     const double growth = (now.kinetic - first.kinetic) + (now.potential - first.potential) +
-                          (now.stored - first.stored) + (now.energy_left - first.energy_left);
+                          (now.stored - first.stored) + (now.energy_left - first.energy_left) -
+                          (now.bed.energy - first.bed.energy);
     // What leaves is recorded with the bed of the nearest node, half a cell away at most.
     const double held_back = near_open_sides(facts_, start_.points) + near_open_sides(facts_, state.points);
     const double recorded =
@@ -184,9 +185,16 @@ std::optional<Violation> Watch::energy(const Snapshot& state) {
     const double beyond_walls = facts_.walls ? deepest_ : 0.0;
     const double lifted =
         facts_.displaces * (facts_.one_cell_drop + (1.0 - facts_.bears) * (highest_ - lowest_) + beyond_walls);
+    // Points take from nodes around them, and leave material there. The bed is bent by what is gone or has been left.
+    const double drop = facts_.one_cell_drop + now.bed.deepest + deepest_;
+    const double exchanged = facts_.bed_energy ? facts_.gravity * ((now.bed.eroded - first.bed.eroded) * drop +
+                                                                   (now.bed.deposited - first.bed.deposited) * drop +
+                                                                   mass_ * now.bed.deepest)
+                                               : 0.0;
     const double share = kEnergyShare * (at_hand_ + turned_over_);
-    return judged("energy", growth, facts_.hidden_energy + share + uphill + recorded + bends + lifted + round_off,
-                  state, "mechanical energy gained beyond the work of gravity [J]");
+    return judged("energy", growth,
+                  facts_.hidden_energy + share + uphill + recorded + bends + lifted + exchanged + round_off, state,
+                  "mechanical energy gained beyond the work of gravity [J]");
 }
 
 double Watch::beyond(double bound) const {

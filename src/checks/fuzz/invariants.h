@@ -65,6 +65,8 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   Columns that go under a lake lift the water over them. A shore within a cell, or cells of water that reach half a
 ///   cell behind a wall, do not take that back. They miss up to the displaced weight over the drop of a cell. Where
 ///   only a share of the pores' pressure bears columns (water.pore_pressure), they miss its rest over the whole fall.
+///   What comes from the bed or becomes bed has the energy recorded for it. A point takes it from nodes around itself:
+///   up to the drop of a cell, and the depth, of that mass is allowed. Where later releases are cut out it is not checked.
 ///   3D points have an energy law anywhere, and none of the exceptions above. A run with columns as well has those of
 ///   columns.
 /// - speed (columns and water): V^2 <= (1 + kConvergence)^2 stretch^4 ((v0 + 2 s sqrt(g h))^2 + 2 g drop). v0 and the
