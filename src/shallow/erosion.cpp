@@ -257,9 +257,9 @@ bool Erosion::is_due(double dt, bool adapts, bool last) const {
 /// THEORY.md, section 18: the middle of what it takes at once is the middle of the last step, to which velocities belong.
 Erosion::Stretch Erosion::next_stretch(double dt, double left) {
     const double owed = waited_ - ahead_, centred = owed - dt;
-    const double steady =
-        share_rate_ * 3.0 * dt > kMostShare ? 0.0 : dt;  // or stretches would go on being long and short
-    waited_ = 0.0, ahead_ = std::max({0.0, -owed, std::min({0.5 * (centred + steady), kMostAhead * dt, left})});
+    // After three steps halfway to what three steps go on with, or stretches would be long and short for ever.
+    const double wanted = waited_ > kMostSteps * dt ? 0.5 * (centred + dt) : centred;
+    waited_ = 0.0, ahead_ = std::max({0.0, -owed, std::min({wanted, kMostAhead * dt, left})});
     return {owed + ahead_, owed - ahead_};
 }
 
