@@ -113,6 +113,9 @@ TEST_CASE("Empirical peaks and their triangles", "[inflow]") {
     CHECK(t.time == std::vector<double>{0, 50, 500});
     CHECK(t.discharge == std::vector<double>{0, 100, 0});
     CHECK(t.volume() == 25000.0);
+    const Hydrograph later = triangle(25000.0, 100.0, 20.0, 200.0);
+    CHECK(later.time == std::vector<double>{20, 220, 520});
+    CHECK(later.volume() == 25000.0);
 }
 
 // Closed forms on a slope of 0.2 with 4 m2/s, their figures from an independent calculation to seven digits.

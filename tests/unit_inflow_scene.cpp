@@ -39,6 +39,18 @@ bool says(const std::string& problem, const std::string& key, const std::string&
 
 }  // namespace
 
+TEST_CASE("A triangle of discharge has the peak, the beginning and the rise that are given", "[scene][inflow]") {
+    const Scene scene = built(with(kLine + "volume = 1000\npeak = 20.0\nat = 5\nrise = 40\n"));
+    const InflowFacts facts = facts_of(scene.inflows.at(0), scene.gravity);
+    CHECK(facts.volume == Approx(1000.0));
+    CHECK(facts.peak == Approx(20.0));
+    CHECK(facts.peak_time == Approx(45.0));
+    CHECK(facts.end == Approx(105.0));
+    CHECK(says(problem_of(with(kLine + "volume = 1000\npeak = 20\nrise = 100\n")), "volume",
+               "found a rise of 100 s; expected less than the 100 s"));
+    CHECK(says(problem_of(with(kLine + "volume = 1000\npeak = -2\n")), "peak", "found -2"));
+}
+
 TEST_CASE("An inflow without a release is a scene", "[scene][inflow]") {
     const Scene scene = built(with(kLine + "volume = 1000\npeak = \"rickenmann\"\n"));
     CHECK(scene.particles.count() == 0);

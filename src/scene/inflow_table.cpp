@@ -263,9 +263,9 @@ double peak_discharge(const std::string& formula, double volume) {
     throw InternalError("unknown formula of a peak discharge");
 }
 
-Hydrograph triangle(double volume, double peak) {
-    const double end = 2.0 * volume / peak;
-    return {{0.0, kRise * end, end}, {0.0, peak, 0.0}, {}};
+Hydrograph triangle(double volume, double peak, double at, std::optional<double> rise) {
+    const double whole = 2.0 * volume / peak;
+    return {{at, at + rise.value_or(kRise * whole), at + whole}, {0.0, peak, 0.0}, {}};
 }
 
 }  // namespace frana

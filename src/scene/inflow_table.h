@@ -1,6 +1,7 @@
 #pragma once
 // Tables of discharge over time, and triangles from a volume.
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,8 @@ Hydrograph parse_hydrograph(const std::string& text, const std::string& source);
 const std::vector<std::string>& peak_formulas();
 /// That of a volume [m3] by one of them [m3/s].
 double peak_discharge(const std::string& formula, double volume);
-/// A triangle of that volume that begins at 0 and is highest after a tenth of its time.
-Hydrograph triangle(double volume, double peak);
+/// A triangle of that volume [m3] with that highest discharge [m3/s]. It begins at `at` [s] and is highest `rise` [s] later:
+/// nothing, a tenth of its time.
+Hydrograph triangle(double volume, double peak, double at = 0.0, std::optional<double> rise = {});
 
 }  // namespace frana

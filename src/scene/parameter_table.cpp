@@ -124,18 +124,21 @@ void add_inflow(Table& table) {
                             "r.avaflow, t Q v for each phase, without units"),
                        "inflow.volume"),
                "volume is needed"));
-    table.push_back(
-        absent(instead(number("inflow.volume", "m3", positive,
-                              "volume of a triangle of discharge that begins at 0 s and is highest after a tenth "
-                              "of its time"),
-                       "inflow.table"),
-               "table is needed"));
-    Parameter peak =
-        make("inflow.peak", Kind::choice, "",
-             "highest discharge of that triangle from its volume V, m3/s and m3: mizuyama-granular: 0.135 V^0.78, "
-             "mizuyama-muddy: 0.0188 V^0.79 (Mizuyama et al. 1992), rickenmann: 0.1 V^0.833 (1999)");
+    table.push_back(absent(
+        instead(number("inflow.volume", "m3", positive, "volume of a triangle of discharge over time"), "inflow.table"),
+        "table is needed"));
+    Parameter peak = make(
+        "inflow.peak", Kind::number_or_choice, "m3/s",
+        "highest discharge of that triangle, or what it follows by from its volume V, m3/s and m3: mizuyama-granular: "
+        "0.135 V^0.78, mizuyama-muddy: 0.0188 V^0.79 (Mizuyama et al. 1992), rickenmann: 0.1 V^0.833 (1999)");
+    peak.range = positive;
     peak.choices = peak_formulas();
     table.push_back(absent(goes_with(peak, "inflow.volume"), "mizuyama-granular"));
+    table.push_back(
+        goes_with(number("inflow.at", "s", not_negative, 0.0, "when that triangle begins"), "inflow.volume"));
+    table.push_back(
+        absent(goes_with(number("inflow.rise", "s", positive, "from there until it is highest"), "inflow.volume"),
+               "a tenth of its time"));
     Parameter velocity =
         make("inflow.velocity", Kind::number_or_choice, "m/s",
              "speed along the bed at the line; normal: that of uniform flow by the bed law, on the slope "

@@ -324,9 +324,21 @@ private:
 
     Hydrograph hydrograph() const {
         if (given("table")) return read_hydrograph(case_.path(prefix_ + "table"));
-        const double volume = case_.number(prefix_ + "volume");
-        const std::string formula = given("peak") ? case_.word(prefix_ + "peak") : peak_formulas().front();
-        return triangle(volume, peak_discharge(formula, volume));
+        const double volume = case_.number(prefix_ + "volume"), peak = highest_discharge(volume);
+        if (!given("rise")) return triangle(volume, peak, case_.number(prefix_ + "at"));
+        const double rise = case_.number(prefix_ + "rise"), whole = 2.0 * volume / peak;
+        if (!(rise < whole))
+            throw UserError(
+                fmt::format("found a rise of {:g} s; expected less than the {:.6g} s that a triangle of {:g} m3 "
+                            "with {:.6g} m3/s takes; give a shorter rise, or another volume or peak",
+                            rise, whole, volume, peak));
+        return triangle(volume, peak, case_.number(prefix_ + "at"), rise);
+    }
+
+    double highest_discharge(double volume) const {
+        const std::string key = prefix_ + "peak";
+        if (!given("peak")) return peak_discharge(peak_formulas().front(), volume);
+        return case_.is_text(key) ? peak_discharge(case_.word(key), volume) : case_.number(key);
     }
 
     void require_room(const Hydrograph& table) const {

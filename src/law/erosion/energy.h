@@ -23,7 +23,7 @@ struct Energy {
 
     /// src/shallow/THEORY.md (70)
     template <class Real>
-    Real rate(const StateOf<Real>& s) const {
+    [[gnu::always_inline]] Real rate(const StateOf<Real>& s) const {
         return s.stress * s.speed / (s.bed_density * energy);
     }
 };

@@ -24,7 +24,7 @@ struct Jump {
 
     /// src/shallow/THEORY.md (71)
     template <class Real>
-    Real rate(const StateOf<Real>& s) const {
+    [[gnu::always_inline]] Real rate(const StateOf<Real>& s) const {
         return max(s.stress - max(s.bears, Real{} + threshold), Real{}) / (s.density * s.speed);
     }
 };

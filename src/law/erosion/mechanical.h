@@ -31,7 +31,7 @@ struct Mechanical {
 
     /// src/shallow/THEORY.md, section 18
     template <class Real>
-    Real rate(const StateOf<Real>& s) const {
+    [[gnu::always_inline]] Real rate(const StateOf<Real>& s) const {
         const Real held = s.bed_density * bed_friction * s.normal_gravity * s.thickness;
         const double inertia = s.density * s.density / (s.density + s.bed_density);
         return shear_velocity * sqrt(max(s.stress - max(s.bears, held), Real{}) / inertia);

@@ -32,7 +32,7 @@ struct Shear {
 
     /// src/shallow/THEORY.md (69)
     template <class Real>
-    Real rate(const StateOf<Real>& s) const {
+    [[gnu::always_inline]] Real rate(const StateOf<Real>& s) const {
         const Real none{}, one = none + 1.0;
         const Real deepest = depth_per_stress * (s.stress - max(s.bears, none + threshold));
         const Real below = max((deepest - s.eroded) / s.dt, none);

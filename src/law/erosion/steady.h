@@ -24,12 +24,12 @@ struct Steady {
 
     /// src/shallow/THEORY.md (68)
     template <class Real>
-    Real rate(const StateOf<Real>& s) const {
+    [[gnu::always_inline]] Real rate(const StateOf<Real>& s) const {
         return s.density / s.bed_density * s.thickness * share_rate(s);
     }
     /// Share of its mass that the flow gains [1/s].
     template <class Real>
-    Real share_rate(const StateOf<Real>&) const {
+    [[gnu::always_inline]] Real share_rate(const StateOf<Real>&) const {
         return Real{} + growth_per_second;
     }
 };
