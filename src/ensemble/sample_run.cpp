@@ -13,6 +13,7 @@
 #include "observe/budget.h"
 #include "run/run_loop.h"
 #include "run/simulation.h"
+#include "scene/bed_over.h"
 #include "scene/build_scene.h"
 #include "scene/flow_start.h"
 #include "scene/taken_of_bed.h"
@@ -64,18 +65,20 @@ struct Way {
     Polyline path;
 };
 
-Way way_of(const Scene& scene) {
+/// To the edge of those nodes of the terrain: a scene may hold no more of it than where its flow begins.
+Way way_of(const Scene& scene, const GridGeometry& shown) {
     Way way{flow_start(scene), {}};
-    if (way.start) way.path = steepest_path(scene.bed, *way.start);
+    if (way.start) way.path = steepest_path(bed_over(scene.bed, scene.wider.get(), shown), *way.start);
     if (!(length_of(way.path) > 0.0)) way.path.clear();
     return way;
 }
 
-/// The base's, so that runs compare. A flow that begins more than a cell from there has its own.
-Way way_of(const Scene& scene, const EnsembleBase& base) {
+/// The base's, so that runs compare. A flow that begins more than a cell from there has its own, over the ground
+/// that it came to, as a comparison of that run has.
+Way way_of(const Scene& scene, const EnsembleBase& base, const GridGeometry& shown) {
     const std::optional<Vec2> start = flow_start(scene);
     if (start && base.start && (*start - *base.start).norm() <= base.whole.cell) return {base.start, base.path};
-    return way_of(scene);
+    return way_of(scene, shown);
 }
 
 /// Distances, and how far the extent is the surveyed one.
@@ -87,7 +90,7 @@ void measure_extent(const EnsembleBase& base, const Scene& scene, const Raster& 
         if (!outline.empty()) result.boundary = distance_between(outline, *base.survey, cell).mean;
     }
     if (outline.empty()) return;
-    const Way way = way_of(scene, base);
+    const Way way = way_of(scene, base, depth.geometry);
     if (!way.start) return;
     result.reach = farthest_from(*way.start, outline);
     result.runout = way.path.empty() ? result.reach : reach_along(way.path, outline, cell);
@@ -169,7 +172,8 @@ EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, co
     base.gauges = scene.gauges;
     base.bed_changes = scene.bed_changes();
     base.barriers = scene.barriers;
-    Way way = way_of(scene);
+    base.wider = scene.wider;
+    Way way = way_of(scene, base.whole);
     base.start = way.start, base.path = std::move(way.path);
     base.footprint = scene.survey;
     if (scene.survey) base.survey = rings_of(*scene.survey);

@@ -29,7 +29,9 @@ struct EnsembleBase {
     bool bed_changes = false;           ///< it is erodible, or something can be left behind
     std::vector<Gauge> gauges;          ///< of the case
     std::vector<Barrier> barriers;      ///< of the case, which maps show
-    Polyline path;                      ///< from there, that runouts are measured along; empty: none is known
+    Polyline path;                      ///< from there to the edge of all of the terrain, that runouts are measured
+                                        ///< along; empty: none is known
+    std::shared_ptr<const WiderTerrain> wider;  ///< that the bed is a part of; nothing: it is all
 };
 
 /// Nothing is stored below the footprint depth [m], so no threshold may lie there. Throws UserError, which names
