@@ -189,3 +189,56 @@ TEST_CASE("A real elevation model reads as GDAL locates its values", "[gdal]") {
         for (Index i = 0; i < part.geometry.nx; ++i)
             if (part.at(i, j) != dem.at(i0 + i, j0 + j)) FAIL("window pixel " << i << " " << j);
 }
+
+namespace {
+
+/// Squares of 30 x 30 pixels of 10 m around 12 degrees east, where zones 32 and 33 have the same scale and 4 degrees
+/// between their norths.
+constexpr double kEast33 = 267000.0, kNorth33 = 5100000.0;
+
+RasterSpec square_of_zone_33(double within, double around) {
+    RasterSpec spec;
+    spec.crs = "EPSG:32633";
+    spec.columns = spec.rows = 60;
+    spec.type = GDT_Float64;
+    spec.nodata = -9999.0;
+    spec.transform = {kEast33, 10.0, 0.0, kNorth33 + 600.0, 0.0, -10.0};
+    spec.value = [=](int column, int row) {
+        return column >= 15 && column < 45 && row >= 15 && row < 45 ? within : around;
+    };
+    return spec;
+}
+
+/// The middle of that raster in zone 32.
+Vec2 middle_in_zone_32() {
+    OGRSpatialReference from, to;
+    from.importFromEPSG(32633);
+    to.importFromEPSG(32632);
+    const gdal::Transformation forth(OGRCreateCoordinateTransformation(&from, &to));
+    double x = kEast33 + 300.0, y = kNorth33 + 300.0;
+    forth->Transform(1, &x, &y);
+    return {std::round(x), std::round(y)};
+}
+
+}  // namespace
+
+TEST_CASE("A mask of another zone covers its area, whatever its number and what is around", "[gdal]") {
+    const Vec2 middle = middle_in_zone_32();
+    const std::array<double, 4> extent{middle.x() - 250, middle.y() - 250, middle.x() + 250, middle.y() + 250};
+    for (const double number : {1.0, 0.25, 255.0})
+        for (const double around : {0.0, -9999.0}) {
+            CAPTURE(number, around);
+            const FreshFolder folder;
+            make_raster(folder.path() / "mask.tif", square_of_zone_33(number, around));
+            std::vector<std::string> log;
+            const Raster mask = GdalReader().read_mask(folder.path() / "mask.tif", extent, wkt_of(32632), log);
+            double area = 0.0;
+            for (const double value : mask.values) {
+                if (!(value > 0.0)) continue;
+                CHECK(value == number);
+                area += mask.geometry.cell * mask.geometry.cell;
+            }
+            // 120 pixels along the edge, each by its middle: an error of sqrt(120 / 12) of 900 pixels, of which 3 here.
+            CHECK(area == Approx(90000.0).epsilon(0.011));
+        }
+}

@@ -138,6 +138,35 @@ void note_gaps(const RasterFile& raster, const GridGeometry& grid, std::vector<s
                                   extent_text(wants)));
 }
 
+/// In the file's own pixels or, by that method, in square ones of another CRS.
+Raster in_pixels(const std::filesystem::path& file, const std::array<double, 4>& extent, const std::string& crs_wkt,
+                 const char* method, std::vector<std::string>& log) {
+    const RasterFile raster(file, gdal::Meaning::any, log);
+    if (needs_warp(raster, crs_wkt)) {
+        Source source(raster, gdal::crs_from_wkt(crs_wkt), extent);
+        const double edge = source.pixel_edge();
+        const auto nx = Index(std::ceil((extent[2] - extent[0]) / edge)),
+                   ny = Index(std::ceil((extent[3] - extent[1]) / edge));
+        log.push_back(fmt::format("{}: reprojected from {} to {:.6g} m pixels in the terrain's CRS", raster.name(),
+                                  gdal::crs_name(raster.crs()), edge));
+        return warped(raster, source, {nx, ny, extent[0] + 0.5 * edge, extent[1] + 0.5 * edge, edge}, crs_wkt, method);
+    }
+    const auto [i, nx] = gdal::touched(raster.x_axis(), extent[0], extent[2]);
+    const auto [j, ny] = gdal::touched(raster.y_axis(), extent[1], extent[3]);
+    if (nx == 0 || ny == 0) refuse_outside(raster, raster.extent(), extent);
+    if (!raster.square()) {
+        const double edge = std::min(raster.x_axis().size, raster.y_axis().size);
+        throw UserError(
+            fmt::format("{}: its pixels are {:g} m by {:g} m; expected square pixels; run: gdalwarp -tr "
+                        "{:.12g} {:.12g} -r bilinear -ot Float32 -dstnodata -9999 {} {}",
+                        file.string(), raster.x_axis().size, raster.y_axis().size, edge, edge,
+                        gdal::shell(file.string()), gdal::shell(gdal::sibling(file, "_square"))));
+    }
+    Raster out = raster.read_raster(i, j, nx, ny);
+    if (out.crs_wkt.empty()) out.crs_wkt = crs_wkt;
+    return out;
+}
+
 }  // namespace
 
 void GdalReader::require_metres(const std::filesystem::path& file) const {
@@ -183,31 +212,12 @@ std::optional<std::array<double, 4>> GdalReader::extent_above_zero(const std::fi
 
 Raster GdalReader::read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
                                const std::string& crs_wkt, std::vector<std::string>& log) const {
-    const RasterFile raster(file, gdal::Meaning::any, log);
-    if (needs_warp(raster, crs_wkt)) {
-        Source source(raster, gdal::crs_from_wkt(crs_wkt), extent);
-        const double edge = source.pixel_edge();
-        const auto nx = Index(std::ceil((extent[2] - extent[0]) / edge)),
-                   ny = Index(std::ceil((extent[3] - extent[1]) / edge));
-        log.push_back(fmt::format("{}: reprojected from {} to {:.6g} m pixels in the terrain's CRS", raster.name(),
-                                  gdal::crs_name(raster.crs()), edge));
-        return warped(raster, source, {nx, ny, extent[0] + 0.5 * edge, extent[1] + 0.5 * edge, edge}, crs_wkt,
-                      "bilinear");
-    }
-    const auto [i, nx] = gdal::touched(raster.x_axis(), extent[0], extent[2]);
-    const auto [j, ny] = gdal::touched(raster.y_axis(), extent[1], extent[3]);
-    if (nx == 0 || ny == 0) refuse_outside(raster, raster.extent(), extent);
-    if (!raster.square()) {
-        const double edge = std::min(raster.x_axis().size, raster.y_axis().size);
-        throw UserError(
-            fmt::format("{}: its pixels are {:g} m by {:g} m; expected square pixels; run: gdalwarp -tr "
-                        "{:.12g} {:.12g} -r bilinear -ot Float32 -dstnodata -9999 {} {}",
-                        file.string(), raster.x_axis().size, raster.y_axis().size, edge, edge,
-                        gdal::shell(file.string()), gdal::shell(gdal::sibling(file, "_square"))));
-    }
-    Raster out = raster.read_raster(i, j, nx, ny);
-    if (out.crs_wkt.empty()) out.crs_wkt = crs_wkt;
-    return out;
+    return in_pixels(file, extent, crs_wkt, "bilinear", log);
+}
+
+Raster GdalReader::read_mask(const std::filesystem::path& file, const std::array<double, 4>& extent,
+                             const std::string& crs_wkt, std::vector<std::string>& log) const {
+    return in_pixels(file, extent, crs_wkt, "near", log);
 }
 
 Raster GdalReader::read_onto(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,

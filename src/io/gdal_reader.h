@@ -37,6 +37,10 @@ public:
     Raster read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
                        const std::string& crs_wkt, std::vector<std::string>& log) const override;
 
+    /// Reprojected likewise, each pixel the file's nearest: a blend of two would be above 0 beyond the edge.
+    Raster read_mask(const std::filesystem::path& file, const std::array<double, 4>& extent, const std::string& crs_wkt,
+                     std::vector<std::string>& log) const override;
+
     /// Nodes that the raster does not cover by half a cell are NaN; UserError when it covers none.
     Raster read_onto(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
                      std::vector<std::string>& log) const override;
