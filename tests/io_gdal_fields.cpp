@@ -220,6 +220,27 @@ Vec2 middle_in_zone_32() {
     return {std::round(x), std::round(y)};
 }
 
+/// Share of a cell of zone 32 that lies in the square, counted on 40 x 40 places.
+double share_in_square(const GridGeometry& grid, Index i, Index j) {
+    static const gdal::Transformation back = [] {
+        OGRSpatialReference from, to;
+        from.importFromEPSG(32632);
+        to.importFromEPSG(32633);
+        return gdal::Transformation(OGRCreateCoordinateTransformation(&from, &to));
+    }();
+    constexpr int kPlaces = 40;
+    int inside = 0;
+    for (int n = 0; n < kPlaces; ++n)
+        for (int m = 0; m < kPlaces; ++m) {
+            double x = grid.x(i) + ((m + 0.5) / kPlaces - 0.5) * grid.cell,
+                   y = grid.y(j) + ((n + 0.5) / kPlaces - 0.5) * grid.cell;
+            back->Transform(1, &x, &y);
+            x -= kEast33 + 150.0, y -= kNorth33 + 150.0;
+            inside += x >= 0.0 && x < 300.0 && y >= 0.0 && y < 300.0;
+        }
+    return inside / double(kPlaces * kPlaces);
+}
+
 }  // namespace
 
 TEST_CASE("A mask of another zone covers its area, whatever its number and what is around", "[gdal]") {
@@ -241,4 +262,37 @@ TEST_CASE("A mask of another zone covers its area, whatever its number and what 
             // 120 pixels along the edge, each by its middle: an error of sqrt(120 / 12) of 900 pixels, of which 3 here.
             CHECK(area == Approx(90000.0).epsilon(0.011));
         }
+}
+
+TEST_CASE("A cell needs values on half of it, in another zone as in the file's own", "[gdal]") {
+    const FreshFolder folder;
+    make_raster(folder.path() / "depth.tif", square_of_zone_33(2.0, -9999.0));
+    const Vec2 middle = middle_in_zone_32();
+    for (const double cell : {50.0, 10.0, 4.0}) {  // the first is averaged, the others interpolated
+        CAPTURE(cell);
+        const Index n = Index(400.0 / cell);
+        const GridGeometry grid{n, n, middle.x() - 200.0 + 0.5 * cell, middle.y() - 200.0 + 0.5 * cell, cell};
+        std::vector<std::string> log;
+        const Raster out = GdalReader().read_onto(folder.path() / "depth.tif", grid, wkt_of(32632), log);
+        Index known = 0, missing = 0;
+        for (Index j = 0; j < n; ++j)
+            for (Index i = 0; i < n; ++i) {
+                // Interpolated are four pixels around a middle, and it is half of a pixel that they need.
+                GridGeometry wide = grid;
+                wide.cell = std::max(cell, 10.0);
+                wide.x0 = grid.x(i), wide.y0 = grid.y(j);
+                const double share = share_in_square(wide, 0, 0);
+                if (std::abs(share - 0.5) < 0.1) continue;  // corners, and what whole pixels of the file cut off
+                INFO(i << " " << j << " " << share);
+                if (share > 0.5) {
+                    ++known;
+                    CHECK(out.at(i, j) == Approx(2.0).epsilon(1e-12));
+                } else {
+                    ++missing;
+                    CHECK(std::isnan(out.at(i, j)));
+                }
+            }
+        CHECK(known > 20);
+        CHECK(missing > 20);
+    }
 }
