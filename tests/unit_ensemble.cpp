@@ -14,6 +14,7 @@
 #include "growing_slide.h"
 #include "scene/bed_over.h"
 #include "scene/build_scene.h"
+#include "slope_case.h"
 #include "terrain/part_of.h"
 
 using namespace frana;
@@ -408,4 +409,48 @@ TEST_CASE("The bed over what was shown is that of the terrain, and of what a sce
     CHECK(bed.geometry == united(west, scene.wider->held).of(scene.wider->grid));
     CHECK(bed.values == gis.plane_on(united(west, scene.wider->held)).values);
     CHECK(bed_over(scene.bed, nullptr, west.of(scene.wider->grid)).geometry == scene.bed.geometry);
+}
+
+TEST_CASE("A varied key of a numbered table that the case does not have is refused", "[ensemble]") {
+    const FakeGis gis = frana::test::slope_gis();
+    const EnsembleFile file;
+    file.write("case.toml", on_long_plane);
+    const auto complaint = [&](const std::string& key) -> std::string {
+        const EnsemblePlan plan = file.read(head + "[[ensemble.vary]]\nkey = \"" + key + "\"\nrange = [0.1, 0.3]\n");
+        try {
+            ensemble_base(plan, gis, {});
+        } catch (const UserError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    CHECK(complaint("release.0.depth").empty());
+    CHECK(complaint("material.bed.mu").empty());
+    CHECK_THAT(complaint("release.1.depth"),
+               Contains("many.toml: release.1.depth: found a varied key of a table that ") &&
+                   Contains("case.toml does not have; it has 1 [[release]], which count from 0"));
+    CHECK_THAT(complaint("material.zone.0.mu"), Contains("it has 0 [[material.zone]]"));
+}
+
+TEST_CASE("An ensemble has the remarks of its case, and those of a sample that are others", "[ensemble]") {
+    const FakeGis gis = frana::test::slope_gis();
+    const EnsembleFile file;
+    file.write("case.toml",
+               "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\nend = "
+               "20\n[material.bed]\nlaw = \"voellmy\"\ntable = \"voellmy-salm\"\n");
+    const auto plan_of = [&](const std::string& key, const std::string& rest) {
+        return file.read(head + "[[ensemble.vary]]\nkey = \"" + key + "\"\n" + rest + "\n");
+    };
+    const EnsemblePlan plan = plan_of("release.0.depth", "range = [1.0, 1.5]");
+    const EnsembleBase base = ensemble_base(plan, gis, {});
+    const auto tells = [](const std::string& remark) { return remark.find("m3 are released") != std::string::npos; };
+    CHECK(std::count_if(base.remarks.begin(), base.remarks.end(), tells) == 1);
+    // The volume follows from the depth, and is in one of the remarks.
+    const std::vector<std::string> others = remarks_of_sample(plan, base, 0, gis, {});
+    REQUIRE(others.size() == 1);
+    CHECK_THAT(others[0], Contains("sample 0: ") && Contains("m3 are released"));
+    CHECK(remarks_of_sample(plan_of("time.end", "range = [1.0, 1.5]"), base, 0, gis, {}).empty());
+    const EnsemblePlan refused =
+        plan_of("release.0.outline", "distribution = \"discrete\"\nvalues = [\"gone.geojson\"]");
+    CHECK(remarks_of_sample(refused, base, 0, gis, {}).empty());
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <ostream>
 
@@ -57,6 +58,25 @@ std::vector<std::string> quiet(std::vector<std::string> sets) {
 Scene scene_of(const EnsemblePlan& plan, const std::vector<std::string>& sets, const GisReader& reader,
                const MeshReader& meshes) {
     return build_scene(CaseFile::read(plan.case_file, quiet(sets)), reader, meshes);
+}
+
+/// A key of a numbered table that the case does not have would be a table of its own in each run, of defaults else.
+void require_tables(const EnsemblePlan& plan, const CaseFile& file) {
+    for (const Vary& vary : plan.vary) {
+        std::size_t dot = vary.key.find('.');
+        while (dot + 1 < vary.key.size() && std::isdigit(static_cast<unsigned char>(vary.key[dot + 1])) == 0) {
+            dot = vary.key.find('.', dot + 1);
+            if (dot == std::string::npos) break;
+        }
+        if (dot >= vary.key.size()) continue;
+        const std::string table = vary.key.substr(0, dot);
+        const Index number = std::stoll(vary.key.substr(dot + 1)), has = file.count(table);
+        if (number >= has)
+            throw UserError(fmt::format(
+                "{}: {}: found a varied key of a table that {} does not have; it has {} [[{}]], which count from 0; "
+                "correct the number, or add the table to the case",
+                plan.file.string(), vary.key, plan.case_file.string(), has, table));
+    }
 }
 
 /// Where runouts are measured from and along.
@@ -163,8 +183,11 @@ void require_kept_thresholds(const EnsemblePlan& plan, double footprint_depth, c
 }
 
 EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, const MeshReader& meshes) {
-    const Scene scene = scene_of(plan, {}, reader, meshes);
+    const CaseFile file = CaseFile::read(plan.case_file, quiet({}));
+    require_tables(plan, file);
+    const Scene scene = build_scene(file, reader, meshes);
     EnsembleBase base;
+    base.remarks = scene.log;
     base.bed = scene.bed;
     base.whole = scene.wider ? scene.wider->grid : scene.bed.geometry;
     base.title = scene.title;
@@ -179,6 +202,18 @@ EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, co
     if (scene.survey) base.survey = rings_of(*scene.survey);
     require_kept_thresholds(plan, base.footprint_depth, "ensemble");
     return base;
+}
+
+std::vector<std::string> remarks_of_sample(const EnsemblePlan& plan, const EnsembleBase& base, Index sample,
+                                           const GisReader& reader, const MeshReader& meshes) {
+    std::vector<std::string> remarks;
+    try {
+        for (const std::string& remark : scene_of(plan, plan.sets_of(sample), reader, meshes).log)
+            if (std::find(base.remarks.begin(), base.remarks.end(), remark) == base.remarks.end())
+                remarks.push_back(fmt::format("sample {}: {}", sample, remark));
+    } catch (const UserError&) {  // its row in runs.csv says why
+    }
+    return remarks;
 }
 
 std::optional<SampleResult> run_sample(const EnsemblePlan& plan, const EnsembleBase& base, Index sample,
