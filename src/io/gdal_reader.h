@@ -22,7 +22,7 @@ public:
 
     std::shared_ptr<const GisReader> lasting() const override { return std::make_shared<GdalReader>(); }
 
-    /// The unit is that of the band or, where that names no length, of the CRS's heights.
+    /// The unit is that of the band or, where that declares none, of the CRS's heights.
     void require_metres(const std::filesystem::path& file) const override;
 
     RasterPlace place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
