@@ -197,6 +197,22 @@ TEST_CASE("Elevations that the band and the CRS declare in different units are r
     }
 }
 
+TEST_CASE("The cure of feet knows the scale and the offset of stored numbers", "[gdal]") {
+    const FreshFolder folder;
+    RasterSpec spec;
+    spec.type = GDT_Int16;
+    spec.unit = "ft";
+    spec.scale = 0.5, spec.offset = 4000.0, spec.nodata = -9999.0;
+    spec.value = [](int column, int row) { return row == 0 ? -9999.0 : 100.0 + column; };
+    make_raster(folder.path() / "dem.tif", spec);
+    const std::string line = cure_in(user_error([&] { read(folder.path() / "dem.tif"); }));
+    run_gdal_line(line);
+    const Raster dem = read(line.substr(line.rfind(' ') + 1));
+    CHECK(range(dem, false) == Approx(0.3048 * 4050.0).epsilon(1e-6));  // float32
+    CHECK(range(dem, true) == Approx(0.3048 * 4053.5).epsilon(1e-6));
+    CHECK(std::count_if(dem.values.begin(), dem.values.end(), [](double z) { return std::isnan(z); }) == 8);
+}
+
 TEST_CASE("A compound CRS in metres is accepted and only its map part is carried on", "[gdal]") {
     const FreshFolder folder;
     RasterSpec spec;

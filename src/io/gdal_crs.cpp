@@ -158,7 +158,7 @@ bool contradict(const std::optional<Unit>& a, const std::optional<Unit>& b) {
 }
 
 /// Turns values into metres. The detour over a VRT drops the old unit, which gdal_translate alone would
-/// carry on, and the vertical CRS.
+/// carry on, and the vertical CRS. A scale and an offset of the stored numbers are applied before.
 std::string scale_line(const Place& place, double metres) {
     std::string crs;
     if (place.crs && place.crs->IsCompound()) {
@@ -174,10 +174,16 @@ std::string scale_line(const Place& place, double metres) {
     }
     const std::string target = sibling(place.file, "_metres");
     const std::string between = std::filesystem::path(target).replace_extension(".vrt").string();
+    std::string before, source = shell(place.file.string());
+    if (place.scaled) {
+        const std::filesystem::path name = sibling(place.file, "_unscaled");
+        const std::string plain = shell(std::filesystem::path(name).replace_extension(".vrt").string());
+        before = fmt::format("gdal_translate -of VRT -unscale -ot Float64 {} {} && ", source, plain), source = plain;
+    }
     return fmt::format(
-        "gdalbuildvrt {}{} {} && gdal_translate -ot Float32 -scale 0 1 0 {:.12g} -a_nodata -9999 "
+        "{}gdalbuildvrt {}{} {} && gdal_translate -ot Float32 -scale 0 1 0 {:.12g} -a_nodata -9999 "
         "{} {}",
-        crs, shell(between), shell(place.file.string()), metres, shell(between), shell(target));
+        before, crs, shell(between), source, metres, shell(between), shell(target));
 }
 
 [[noreturn]] void refuse_unit(const Place& place, const char* what, const Unit& unit) {

@@ -37,6 +37,7 @@ struct Place {
     const OGRSpatialReference* crs = nullptr;  ///< null: unknown
     std::array<double, 2> centre{};            ///< of what is used, in the CRS
     std::string band_unit;                     ///< unit of the elevations that the band declares, or empty
+    bool scaled = false;                       ///< numbers are stored with a scale or an offset
 };
 
 /// Checks that map coordinates (and elevations) are metres. UserError with a gdalwarp or gdal_translate line

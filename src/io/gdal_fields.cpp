@@ -204,7 +204,7 @@ Raster in_pixels(const std::filesystem::path& file, const std::array<double, 4>&
 void GdalReader::require_metres(const std::filesystem::path& file) const {
     std::vector<std::string> said_when_it_is_read;
     const RasterFile raster(file, gdal::Meaning::any, said_when_it_is_read);
-    gdal::require_metre_values({file, &raster.crs(), {}, raster.unit()});
+    gdal::require_metre_values({file, &raster.crs(), {}, raster.unit(), raster.scaled()});
 }
 
 RasterPlace GdalReader::place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
