@@ -29,14 +29,20 @@ void say_result(const fs::path& dir, const EnsembleSummary& summary) {
     for (const std::string& file : summary.files) std::cout << (dir / file).string() << '\n';
 }
 
+/// As `frana check` has them.
+void say_remarks(const EnsembleRun& ensemble) {
+    for (const std::string& remark : ensemble.base().remarks) std::cout << "remark      " << remark << '\n';
+}
+
 /// The maps of all runs in the folder.
 int join(const EnsembleOptions& options, const EnsembleRun& ensemble, std::optional<double> wall_seconds) {
     const EnsembleSummary summary = ensemble.join(wall_seconds);
     if (!options.quiet && options.progress.empty()) say_result(options.out, summary);
     if (!summary.too_many_failed()) return 0;
     std::cerr << fmt::format(
-        "{} of {} runs failed, more than 5 % of the weight: the maps should not be trusted; the reasons are in {}\n",
-        summary.failed, summary.run, (options.out / "runs.csv").string());
+        "{} of {} runs failed, more than 5 % of the weight: the maps should not be trusted; the first one so: {}; the "
+        "reasons are in {}\n",
+        summary.failed, summary.run, summary.first_failure, (options.out / "runs.csv").string());
     return 3;
 }
 
@@ -45,6 +51,7 @@ int foretell(const EnsembleRun& ensemble, const EnsembleOptions& options) {
     const EnsemblePlan& plan = ensemble.plan();
     std::cout << fmt::format("{}: {} samples by \"{}\", seed {}\n", plan.file.string(), plan.samples, plan.method_name,
                              plan.seed);
+    say_remarks(ensemble);
     constexpr Index shown = 5;
     for (Index i = 0; i < std::min(shown, plan.samples); ++i) {
         std::cout << fmt::format("  {}:", i);
@@ -114,6 +121,7 @@ int run_shard(const EnsembleOptions& options, const EnsembleRun& ensemble) {
     const auto start = Clock::now();
     const Shard shard = options.shard.empty() ? Shard{} : read_shard(options.shard);
     const std::vector<Index> samples = ensemble.left_to_run(shard, options.resume);
+    if (!options.quiet && options.progress.empty()) say_remarks(ensemble);
     const Interrupt interrupt(Interrupt::Listen::signals);
     RunTeller teller(samples.size(), options.quiet, options.progress);
     ensemble.run(shard, samples, options.threads, interrupt, [&](bool failed) { teller.done(failed); });

@@ -1,5 +1,7 @@
 // Coordinate systems that a run cannot use are refused with a line that works.
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "fresh_folder.h"
 #include "io/gdal_crs.h"
@@ -111,7 +113,7 @@ TEST_CASE("Elevations declared in feet are refused and cured, with or without me
     }
 }
 
-TEST_CASE("Depths declared in feet or centimetres are refused and cured; unknown units are taken as metres", "[gdal]") {
+TEST_CASE("Depths declared in feet or centimetres are refused and cured, by whatever name", "[gdal]") {
     struct Kind {
         const char* crs;
         const char* unit;
@@ -121,7 +123,16 @@ TEST_CASE("Depths declared in feet or centimetres are refused and cured; unknown
                           {"EPSG:32632", "cm", 0.01},
                           {"EPSG:32632", "", 0.0},
                           {"EPSG:32632", "m", 0.0},
-                          {"EPSG:32632", "Pa", 0.0},
+                          {"EPSG:32632", "Metres (EGM2008)", 0.0},
+                          {"EPSG:32632", "m a.s.l.", 0.0},
+                          {"EPSG:32632", "unknown", 0.0},
+                          {"EPSG:32632", "US feet", 1200.0 / 3937.0},
+                          {"EPSG:32632", "USft", 1200.0 / 3937.0},
+                          {"EPSG:32632", "us_ft", 1200.0 / 3937.0},
+                          {"EPSG:32632", "foot (international)", 0.3048},
+                          {"EPSG:32632", "yd", 0.9144},
+                          {"EPSG:32632", "decimetre", 0.1},
+                          {"EPSG:32632", "centimeters", 0.01},
                           {"", "Feet", 0.3048},
                           {"EPSG:32618+6360", "", 1200.0 / 3937.0}};
     for (const Kind& kind : kinds) {
@@ -147,6 +158,59 @@ TEST_CASE("Depths declared in feet or centimetres are refused and cured; unknown
         CHECK_NOTHROW(GdalReader().require_metres(cured));
         CHECK(range(read(cured), true) == Approx(12.0 * kind.metres).epsilon(1e-6));
     }
+}
+
+TEST_CASE("A unit that is no known length is refused, for depths and elevations alike", "[gdal]") {
+    for (const char* unit : {"Pa", "cubit", "m/s", "m 1e-2"}) {
+        CAPTURE(unit);
+        const FreshFolder folder;
+        RasterSpec spec;
+        spec.unit = unit;
+        spec.value = [](int column, int) { return 5.0 + column; };
+        const auto file = folder.path() / "depth.tif";
+        make_raster(file, spec);
+        const std::string declared = std::string(" are declared in \"") + unit + "\", which is no length that is known";
+        CHECK(contains(user_error([&] { GdalReader().require_metres(file); }), "its values" + declared));
+        const std::string message = user_error([&] { read(file); });
+        CHECK(contains(message, "its elevations" + declared));
+        const std::string line = cure_in(message);  // for a unit of 0.5 m
+        run_gdal_line(line);
+        CHECK(range(read(line.substr(line.rfind(' ') + 1)), true) == Approx(6.0).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("Elevations that the band and the CRS declare in different units are refused", "[gdal]") {
+    const FreshFolder folder;
+    RasterSpec spec;
+    spec.crs = "EPSG:32632+5773";
+    spec.unit = "ft";
+    spec.value = [](int column, int) { return 1000.0 + column; };
+    make_raster(folder.path() / "dem.tif", spec);
+    const std::string message = user_error([&] { read(folder.path() / "dem.tif"); });
+    CHECK(contains(message, "its elevations are declared in \"ft\" by the band and in \"metre\" by the CRS"));
+    const std::string metres = message.substr(0, message.find("; where ft is true"));
+    CHECK(contains(metres, "where metre is true run: gdalbuildvrt "));
+    for (const auto& [line, factor] : {std::pair{cure_in(metres), 1.0}, std::pair{cure_in(message), 0.3048}}) {
+        run_gdal_line(line);
+        CHECK(range(read(line.substr(line.rfind(' ') + 1)), true) == Approx(1007.0 * factor).epsilon(1e-6));
+        std::filesystem::remove(line.substr(line.rfind(' ') + 1));
+    }
+}
+
+TEST_CASE("The cure of feet knows the scale and the offset of stored numbers", "[gdal]") {
+    const FreshFolder folder;
+    RasterSpec spec;
+    spec.type = GDT_Int16;
+    spec.unit = "ft";
+    spec.scale = 0.5, spec.offset = 4000.0, spec.nodata = -9999.0;
+    spec.value = [](int column, int row) { return row == 0 ? -9999.0 : 100.0 + column; };
+    make_raster(folder.path() / "dem.tif", spec);
+    const std::string line = cure_in(user_error([&] { read(folder.path() / "dem.tif"); }));
+    run_gdal_line(line);
+    const Raster dem = read(line.substr(line.rfind(' ') + 1));
+    CHECK(range(dem, false) == Approx(0.3048 * 4050.0).epsilon(1e-6));  // float32
+    CHECK(range(dem, true) == Approx(0.3048 * 4053.5).epsilon(1e-6));
+    CHECK(std::count_if(dem.values.begin(), dem.values.end(), [](double z) { return std::isnan(z); }) == 8);
 }
 
 TEST_CASE("A compound CRS in metres is accepted and only its map part is carried on", "[gdal]") {

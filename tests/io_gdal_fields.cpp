@@ -189,3 +189,110 @@ TEST_CASE("A real elevation model reads as GDAL locates its values", "[gdal]") {
         for (Index i = 0; i < part.geometry.nx; ++i)
             if (part.at(i, j) != dem.at(i0 + i, j0 + j)) FAIL("window pixel " << i << " " << j);
 }
+
+namespace {
+
+/// Squares of 30 x 30 pixels of 10 m around 12 degrees east, where zones 32 and 33 have the same scale and 4 degrees
+/// between their norths.
+constexpr double kEast33 = 267000.0, kNorth33 = 5100000.0;
+
+RasterSpec square_of_zone_33(double within, double around) {
+    RasterSpec spec;
+    spec.crs = "EPSG:32633";
+    spec.columns = spec.rows = 60;
+    spec.type = GDT_Float64;
+    spec.nodata = -9999.0;
+    spec.transform = {kEast33, 10.0, 0.0, kNorth33 + 600.0, 0.0, -10.0};
+    spec.value = [=](int column, int row) {
+        return column >= 15 && column < 45 && row >= 15 && row < 45 ? within : around;
+    };
+    return spec;
+}
+
+/// The middle of that raster in zone 32.
+Vec2 middle_in_zone_32() {
+    OGRSpatialReference from, to;
+    from.importFromEPSG(32633);
+    to.importFromEPSG(32632);
+    const gdal::Transformation forth(OGRCreateCoordinateTransformation(&from, &to));
+    double x = kEast33 + 300.0, y = kNorth33 + 300.0;
+    forth->Transform(1, &x, &y);
+    return {std::round(x), std::round(y)};
+}
+
+/// Share of a cell of zone 32 that lies in the square, counted on 40 x 40 places.
+double share_in_square(const GridGeometry& grid, Index i, Index j) {
+    static const gdal::Transformation back = [] {
+        OGRSpatialReference from, to;
+        from.importFromEPSG(32632);
+        to.importFromEPSG(32633);
+        return gdal::Transformation(OGRCreateCoordinateTransformation(&from, &to));
+    }();
+    constexpr int kPlaces = 40;
+    int inside = 0;
+    for (int n = 0; n < kPlaces; ++n)
+        for (int m = 0; m < kPlaces; ++m) {
+            double x = grid.x(i) + ((m + 0.5) / kPlaces - 0.5) * grid.cell,
+                   y = grid.y(j) + ((n + 0.5) / kPlaces - 0.5) * grid.cell;
+            back->Transform(1, &x, &y);
+            x -= kEast33 + 150.0, y -= kNorth33 + 150.0;
+            inside += x >= 0.0 && x < 300.0 && y >= 0.0 && y < 300.0;
+        }
+    return inside / double(kPlaces * kPlaces);
+}
+
+}  // namespace
+
+TEST_CASE("A mask of another zone covers its area, whatever its number and what is around", "[gdal]") {
+    const Vec2 middle = middle_in_zone_32();
+    const std::array<double, 4> extent{middle.x() - 250, middle.y() - 250, middle.x() + 250, middle.y() + 250};
+    for (const double number : {1.0, 0.25, 255.0})
+        for (const double around : {0.0, -9999.0}) {
+            CAPTURE(number, around);
+            const FreshFolder folder;
+            make_raster(folder.path() / "mask.tif", square_of_zone_33(number, around));
+            std::vector<std::string> log;
+            const Raster mask = GdalReader().read_mask(folder.path() / "mask.tif", extent, wkt_of(32632), log);
+            double area = 0.0;
+            for (const double value : mask.values) {
+                if (!(value > 0.0)) continue;
+                CHECK(value == number);
+                area += mask.geometry.cell * mask.geometry.cell;
+            }
+            // 120 pixels along the edge, each by its middle: an error of sqrt(120 / 12) of 900 pixels, of which 3 here.
+            CHECK(area == Approx(90000.0).epsilon(0.011));
+        }
+}
+
+TEST_CASE("A cell needs values on half of it, in another zone as in the file's own", "[gdal]") {
+    const FreshFolder folder;
+    make_raster(folder.path() / "depth.tif", square_of_zone_33(2.0, -9999.0));
+    const Vec2 middle = middle_in_zone_32();
+    for (const double cell : {50.0, 10.0, 4.0}) {  // the first is averaged, the others interpolated
+        CAPTURE(cell);
+        const Index n = Index(400.0 / cell);
+        const GridGeometry grid{n, n, middle.x() - 200.0 + 0.5 * cell, middle.y() - 200.0 + 0.5 * cell, cell};
+        std::vector<std::string> log;
+        const Raster out = GdalReader().read_onto(folder.path() / "depth.tif", grid, wkt_of(32632), log);
+        Index known = 0, missing = 0;
+        for (Index j = 0; j < n; ++j)
+            for (Index i = 0; i < n; ++i) {
+                // Interpolated are four pixels around a middle, and it is half of a pixel that they need.
+                GridGeometry wide = grid;
+                wide.cell = std::max(cell, 10.0);
+                wide.x0 = grid.x(i), wide.y0 = grid.y(j);
+                const double share = share_in_square(wide, 0, 0);
+                if (std::abs(share - 0.5) < 0.1) continue;  // corners, and what whole pixels of the file cut off
+                INFO(i << " " << j << " " << share);
+                if (share > 0.5) {
+                    ++known;
+                    CHECK(out.at(i, j) == Approx(2.0).epsilon(1e-12));
+                } else {
+                    ++missing;
+                    CHECK(std::isnan(out.at(i, j)));
+                }
+            }
+        CHECK(known > 20);
+        CHECK(missing > 20);
+    }
+}

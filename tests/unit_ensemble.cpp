@@ -7,9 +7,15 @@
 #include "base/error.h"
 #include "catch.h"
 #include "ensemble/plan.h"
+#include "ensemble/sample_run.h"
 #include "ensemble/sensitivity.h"
 #include "ensemble/statistics.h"
 #include "fresh_folder.h"
+#include "growing_slide.h"
+#include "scene/bed_over.h"
+#include "scene/build_scene.h"
+#include "slope_case.h"
+#include "terrain/part_of.h"
 
 using namespace frana;
 using Catch::Contains;
@@ -53,7 +59,10 @@ Distribution numbers_of(Distribution::Kind kind, double low, double high, double
 /// An ensemble file beside a case, and what is said of it.
 class EnsembleFile {
 public:
-    EnsembleFile() { write("case.toml", "[terrain]\ndem = \"dem.asc\"\n"); }
+    EnsembleFile() {
+        write("case.toml", "[terrain]\ndem = \"dem.asc\"\n");
+        for (const char* name : {"dem.tif", "release.geojson", "gone.geojson"}) write(name, "read by nobody");
+    }
     void write(const std::string& name, const std::string& text) const { write_text(folder_.path() / name, text); }
     EnsemblePlan read(const std::string& text) const {
         write("many.toml", text);
@@ -353,4 +362,95 @@ TEST_CASE("Morris' ways change one key at a time, and find the slopes of what is
     CHECK(found[0].total == Approx(0.0).margin(1e-7));  // a difference of squares
     CHECK(found[1].total > 0.05);                       // its slope is -2 + z
     CHECK(found[2].total > 0.05);
+}
+
+namespace {
+
+/// A plane that falls to the west, of which a run that begins in the east holds a part.
+frana::test::LargeGis long_plane() {
+    frana::test::LargeGis gis({3000, 60, 2.5, 2.5, 5.0});
+    gis.polygons["release.geojson"] = rectangle(12000, 100, 12040, 140);
+    return gis;
+}
+
+const std::string on_long_plane =
+    "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\nend = 20\n"
+    "[material.bed]\nlaw = \"coulomb\"\nmu = 0.2\n";
+
+}  // namespace
+
+TEST_CASE("The path of an ensemble's runouts leads to the edge of the terrain, of which runs begin with a part",
+          "[ensemble]") {
+    const frana::test::LargeGis gis = long_plane();
+    const EnsembleFile file;
+    file.write("case.toml", on_long_plane);
+    const EnsemblePlan plan = file.read(head + mu);
+    const EnsembleBase base = ensemble_base(plan, gis, {});
+    REQUIRE(base.bed.geometry.x0 > 8000.0);  // some 600 nodes west of the release
+    REQUIRE(base.start);
+    REQUIRE(base.path.size() > 1);
+    CHECK(base.path.front().x() == Approx(base.start->x()).margin(2.5));
+    CHECK(base.path.back().x() == 2.5);
+
+    file.write("case.toml", on_long_plane + "[output]\nextent = \"terrain\"\n");
+    const EnsembleBase all = ensemble_base(plan, gis, {});
+    REQUIRE(all.bed.geometry == base.whole);
+    CHECK(all.path == base.path);
+}
+
+TEST_CASE("The bed over what was shown is that of the terrain, and of what a scene holds", "[ensemble]") {
+    const frana::test::LargeGis gis = long_plane();
+    const EnsembleFile file;
+    file.write("case.toml", on_long_plane);
+    const Scene scene = build_scene(CaseFile::read(file.read(head + mu).case_file), gis);
+    REQUIRE(scene.wider);
+    const NodeBox west{100, 10, 50, 20};
+    const Raster bed = bed_over(scene.bed, scene.wider.get(), west.of(scene.wider->grid));
+    CHECK(bed.geometry == united(west, scene.wider->held).of(scene.wider->grid));
+    CHECK(bed.values == gis.plane_on(united(west, scene.wider->held)).values);
+    CHECK(bed_over(scene.bed, nullptr, west.of(scene.wider->grid)).geometry == scene.bed.geometry);
+}
+
+TEST_CASE("A varied key of a numbered table that the case does not have is refused", "[ensemble]") {
+    const FakeGis gis = frana::test::slope_gis();
+    const EnsembleFile file;
+    file.write("case.toml", on_long_plane);
+    const auto complaint = [&](const std::string& key) -> std::string {
+        const EnsemblePlan plan = file.read(head + "[[ensemble.vary]]\nkey = \"" + key + "\"\nrange = [0.1, 0.3]\n");
+        try {
+            ensemble_base(plan, gis, {});
+        } catch (const UserError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    CHECK(complaint("release.0.depth").empty());
+    CHECK(complaint("material.bed.mu").empty());
+    CHECK_THAT(complaint("release.1.depth"),
+               Contains("many.toml: release.1.depth: found a varied key of a table that ") &&
+                   Contains("case.toml does not have; it has 1 [[release]], which count from 0"));
+    CHECK_THAT(complaint("material.zone.0.mu"), Contains("it has 0 [[material.zone]]"));
+}
+
+TEST_CASE("An ensemble has the remarks of its case, and those of a sample that are others", "[ensemble]") {
+    const FakeGis gis = frana::test::slope_gis();
+    const EnsembleFile file;
+    file.write("case.toml",
+               "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\nend = "
+               "20\n[material.bed]\nlaw = \"voellmy\"\ntable = \"voellmy-salm\"\n");
+    const auto plan_of = [&](const std::string& key, const std::string& rest) {
+        return file.read(head + "[[ensemble.vary]]\nkey = \"" + key + "\"\n" + rest + "\n");
+    };
+    const EnsemblePlan plan = plan_of("release.0.depth", "range = [1.0, 1.5]");
+    const EnsembleBase base = ensemble_base(plan, gis, {});
+    const auto tells = [](const std::string& remark) { return remark.find("m3 are released") != std::string::npos; };
+    CHECK(std::count_if(base.remarks.begin(), base.remarks.end(), tells) == 1);
+    // The volume follows from the depth, and is in one of the remarks.
+    const std::vector<std::string> others = remarks_of_sample(plan, base, 0, gis, {});
+    REQUIRE(others.size() == 1);
+    CHECK_THAT(others[0], Contains("sample 0: ") && Contains("m3 are released"));
+    CHECK(remarks_of_sample(plan_of("time.end", "range = [1.0, 1.5]"), base, 0, gis, {}).empty());
+    const EnsemblePlan refused =
+        plan_of("release.0.outline", "distribution = \"discrete\"\nvalues = [\"gone.geojson\"]");
+    CHECK(remarks_of_sample(refused, base, 0, gis, {}).empty());
 }

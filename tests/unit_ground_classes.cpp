@@ -82,6 +82,36 @@ TEST_CASE("Nodata does not bend the adjacent ground", "[scene]") {
     check_all(bed, kOpen);
 }
 
+TEST_CASE("Ground is averaged over the length that is given, of cells that it cuts over a part", "[scene]") {
+    // Of a single node that is higher, its row and column have the parts of the square's sides that lie on cells.
+    for (const double cell : {5.0, 10.0, 30.0, 49.0, 50.0, 60.0}) {
+        CAPTURE(cell);
+        Raster bed = Raster::filled({21, 21, 0.0, 0.0, cell}, 0.0);
+        bed.at(10, 10) = 1.0;
+        const Raster mean = smoothed(bed, 50.0);
+        for (Index d = 0; d <= 8; ++d) {
+            const double half = std::max(25.0, 0.5 * cell), middle = cell * static_cast<double>(d);
+            const double on_cell =
+                std::max(0.0, std::min(half, middle + 0.5 * cell) - std::max(-half, middle - 0.5 * cell));
+            CHECK(mean.at(10 + d, 10) == Approx(on_cell / (2.0 * half) * cell / (2.0 * half)).margin(1e-15));
+        }
+        double sum = 0.0;
+        for (const double value : mean.values) sum += value;
+        CHECK(sum == Approx(1.0).epsilon(1e-14));
+    }
+}
+
+TEST_CASE("The sentence on the classes of ground says over what length they are taken", "[scene]") {
+    const auto says = [](const std::string& length, const std::string& part) {
+        const Scene scene = scene_of(with_bed("table = \"voellmy-salm\"\n" + length), slope_gis());
+        return std::any_of(scene.log.begin(), scene.log.end(),
+                           [&](const std::string& line) { return line.find(part) != std::string::npos; });
+    };
+    CHECK(says("", "terrain averaged over 50 m"));
+    CHECK(says("curvature_length = 6\n", "terrain averaged over 6 m"));
+    CHECK(says("curvature_length = 5\n", "terrain as its cells of 5 m have it"));
+}
+
 TEST_CASE("A scene has the table's mu and xi of its nodes, and says so", "[scene]") {
     const FakeGis gis = slope_gis();
     const Scene scene = scene_of(with_bed("table = \"voellmy-salm\"\nreturn_period = 100\nvolume_class = \"small\"\n"

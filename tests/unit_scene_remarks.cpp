@@ -188,6 +188,22 @@ TEST_CASE("Holes inside the terrain are remarked upon, as walls or as open, with
     CHECK_FALSE(build_scene(CaseFile::parse(plain, "slide/case.toml"), slope(0.5)).hole_top.has_value());
 }
 
+TEST_CASE("A section beyond the outermost nodes of an open terrain is remarked upon", "[scene][remarks][sections]") {
+    const auto with = [](const std::string& line, const std::string& rest = "") {
+        return case_of(coulomb + "bed.mu = 0.4", "2.0", "[[section]]\nname = \"gate\"\nline = " + line + "\n" + rest);
+    };
+    // Nodes from x 1002.5 to 1197.5 and y 2002.5 to 2147.5, cells of 5 m.
+    CHECK(remark(with("[[1002, 2010], [1002, 2130]]"), slope(0.5), "outermost nodes") ==
+          "section gate: found 120 m of its line beyond the outermost nodes, within half a cell of the terrain's edge; "
+          "expected it among them; what leaves the terrain there counts in part; draw it a cell or more farther in");
+    CHECK(remark(with("[[1100, 2010], [1100, 2149], [1120, 2149]]"), slope(0.5), "outermost nodes").find("21.5 m") !=
+          std::string::npos);
+    for (const char* fit : {"[[1002.5, 2000], [1002.5, 2150]]", "[[1000, 2000], [1200, 2150]]"})
+        CHECK(remarks(with(fit), slope(0.5), "outermost nodes").empty());
+    CHECK(remarks(with("[[1002, 2010], [1002, 2130]]", "[boundary]\nsides = \"wall\"\n"), slope(0.5), "outermost nodes")
+              .empty());
+}
+
 TEST_CASE("Every remark of the table is in the manual of the commands", "[scene][remarks]") {
     std::ifstream file(FRANA_SOURCE_DIR "/apps/README.md");
     std::stringstream text;

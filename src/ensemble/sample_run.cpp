@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <ostream>
 
@@ -13,6 +14,7 @@
 #include "observe/budget.h"
 #include "run/run_loop.h"
 #include "run/simulation.h"
+#include "scene/bed_over.h"
 #include "scene/build_scene.h"
 #include "scene/flow_start.h"
 #include "scene/taken_of_bed.h"
@@ -58,24 +60,45 @@ Scene scene_of(const EnsemblePlan& plan, const std::vector<std::string>& sets, c
     return build_scene(CaseFile::read(plan.case_file, quiet(sets)), reader, meshes);
 }
 
+/// A key of a numbered table that the case does not have would be a table of its own in each run, of defaults else.
+void require_tables(const EnsemblePlan& plan, const CaseFile& file) {
+    for (const Vary& vary : plan.vary) {
+        std::size_t dot = vary.key.find('.');
+        while (dot + 1 < vary.key.size() && std::isdigit(static_cast<unsigned char>(vary.key[dot + 1])) == 0) {
+            dot = vary.key.find('.', dot + 1);
+            if (dot == std::string::npos) break;
+        }
+        if (dot >= vary.key.size()) continue;
+        const std::string table = vary.key.substr(0, dot);
+        const Index number = std::stoll(vary.key.substr(dot + 1)), has = file.count(table);
+        if (number >= has)
+            throw UserError(fmt::format(
+                "{}: {}: found a varied key of a table that {} does not have; it has {} [[{}]], which count from 0; "
+                "correct the number, or add the table to the case",
+                plan.file.string(), vary.key, plan.case_file.string(), has, table));
+    }
+}
+
 /// Where runouts are measured from and along.
 struct Way {
     std::optional<Vec2> start;
     Polyline path;
 };
 
-Way way_of(const Scene& scene) {
+/// To the edge of those nodes of the terrain: a scene may hold no more of it than where its flow begins.
+Way way_of(const Scene& scene, const GridGeometry& shown) {
     Way way{flow_start(scene), {}};
-    if (way.start) way.path = steepest_path(scene.bed, *way.start);
+    if (way.start) way.path = steepest_path(bed_over(scene.bed, scene.wider.get(), shown), *way.start);
     if (!(length_of(way.path) > 0.0)) way.path.clear();
     return way;
 }
 
-/// The base's, so that runs compare. A flow that begins more than a cell from there has its own.
-Way way_of(const Scene& scene, const EnsembleBase& base) {
+/// The base's, so that runs compare. A flow that begins more than a cell from there has its own, over the ground
+/// that it came to, as a comparison of that run has.
+Way way_of(const Scene& scene, const EnsembleBase& base, const GridGeometry& shown) {
     const std::optional<Vec2> start = flow_start(scene);
     if (start && base.start && (*start - *base.start).norm() <= base.whole.cell) return {base.start, base.path};
-    return way_of(scene);
+    return way_of(scene, shown);
 }
 
 /// Distances, and how far the extent is the surveyed one.
@@ -87,7 +110,7 @@ void measure_extent(const EnsembleBase& base, const Scene& scene, const Raster& 
         if (!outline.empty()) result.boundary = distance_between(outline, *base.survey, cell).mean;
     }
     if (outline.empty()) return;
-    const Way way = way_of(scene, base);
+    const Way way = way_of(scene, base, depth.geometry);
     if (!way.start) return;
     result.reach = farthest_from(*way.start, outline);
     result.runout = way.path.empty() ? result.reach : reach_along(way.path, outline, cell);
@@ -160,8 +183,11 @@ void require_kept_thresholds(const EnsemblePlan& plan, double footprint_depth, c
 }
 
 EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, const MeshReader& meshes) {
-    const Scene scene = scene_of(plan, {}, reader, meshes);
+    const CaseFile file = CaseFile::read(plan.case_file, quiet({}));
+    require_tables(plan, file);
+    const Scene scene = build_scene(file, reader, meshes);
     EnsembleBase base;
+    base.remarks = scene.log;
     base.bed = scene.bed;
     base.whole = scene.wider ? scene.wider->grid : scene.bed.geometry;
     base.title = scene.title;
@@ -169,12 +195,25 @@ EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, co
     base.gauges = scene.gauges;
     base.bed_changes = scene.bed_changes();
     base.barriers = scene.barriers;
-    Way way = way_of(scene);
+    base.wider = scene.wider;
+    Way way = way_of(scene, base.whole);
     base.start = way.start, base.path = std::move(way.path);
     base.footprint = scene.survey;
     if (scene.survey) base.survey = rings_of(*scene.survey);
     require_kept_thresholds(plan, base.footprint_depth, "ensemble");
     return base;
+}
+
+std::vector<std::string> remarks_of_sample(const EnsemblePlan& plan, const EnsembleBase& base, Index sample,
+                                           const GisReader& reader, const MeshReader& meshes) {
+    std::vector<std::string> remarks;
+    try {
+        for (const std::string& remark : scene_of(plan, plan.sets_of(sample), reader, meshes).log)
+            if (std::find(base.remarks.begin(), base.remarks.end(), remark) == base.remarks.end())
+                remarks.push_back(fmt::format("sample {}: {}", sample, remark));
+    } catch (const UserError&) {  // its row in runs.csv says why
+    }
+    return remarks;
 }
 
 std::optional<SampleResult> run_sample(const EnsemblePlan& plan, const EnsembleBase& base, Index sample,

@@ -29,15 +29,23 @@ struct EnsembleBase {
     bool bed_changes = false;           ///< it is erodible, or something can be left behind
     std::vector<Gauge> gauges;          ///< of the case
     std::vector<Barrier> barriers;      ///< of the case, which maps show
-    Polyline path;                      ///< from there, that runouts are measured along; empty: none is known
+    Polyline path;                      ///< from there to the edge of all of the terrain, that runouts are measured
+                                        ///< along; empty: none is known
+    std::vector<std::string> remarks;   ///< made while the case was built
+    std::shared_ptr<const WiderTerrain> wider;  ///< that the bed is a part of; nothing: it is all
 };
 
 /// Nothing is stored below the footprint depth [m], so no threshold may lie there. Throws UserError, which names
 /// `table`.
 void require_kept_thresholds(const EnsemblePlan& plan, double footprint_depth, const std::string& table);
 
-/// Builds the case of the plan once. Throws UserError when it cannot run.
+/// Builds the case of the plan once. Throws UserError when it cannot run, or lacks the table of a key that varies.
 EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, const MeshReader& meshes);
+
+/// What building the case of a sample remarks and that of the base does not, each with the sample's number. Nothing
+/// where it cannot run.
+std::vector<std::string> remarks_of_sample(const EnsemblePlan& plan, const EnsembleBase& base, Index sample,
+                                           const GisReader& reader, const MeshReader& meshes);
 
 /// What is stored of a run.
 struct SampleResult {

@@ -3,8 +3,11 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstring>
 #include <map>
+#include <set>
 
 #include "base/constants.h"
 #include "base/error.h"
@@ -13,8 +16,10 @@
 namespace frana::gdal {
 namespace {
 
+constexpr double foot = 0.3048;              // [m]
 constexpr double us_foot = 1200.0 / 3937.0;  // [m]
 constexpr double unit_tolerance = 1e-9;      // a US survey foot differs from a foot by 2e-6
+constexpr double any_foot = 1e-5;            // relative: many a declaration means one foot and says the other
 constexpr double scale_tolerance = 0.01;     // UTM: 0.0004 in the middle of its zone, 0.001 at its edge
 
 std::string authority(const OGRSpatialReference& crs) {
@@ -46,34 +51,90 @@ std::string metric_crs(const Place& place) {
 }
 
 struct Unit {
-    double metres = 1.0;
+    double metres = 1.0;  ///< NaN: not known
     std::string name;
 };
 
-/// The unit that a band declares. Nothing where its name is that of no length.
+/// Words of a declaration: letters in lower case, digits, and signs that are not between words.
+std::vector<std::string> words_of(const std::string& text) {
+    std::vector<std::string> words(1);
+    for (const unsigned char c : text) {
+        const bool between = std::isspace(c) || std::strchr("_-.,;:()[]'", c) != nullptr;
+        if (!between)
+            words.back() += static_cast<char>(std::tolower(c));
+        else if (!words.back().empty())
+            words.emplace_back();
+    }
+    if (words.back().empty()) words.pop_back();
+    return words;
+}
+
+/// "m", "metres", "m a.s.l.", "metres (EGM2008)": nothing but words follow, which may name a datum.
+bool says_metres(const std::vector<std::string>& words) {
+    static const std::set<std::string> metres{"m",   "metre", "metres", "meter", "meters", "mètre", "mètres",
+                                              "mtr", "metro", "metros", "metri", "masl",   "mamsl"};
+    return metres.count(words.front()) > 0 && std::all_of(words.begin() + 1, words.end(), [](const std::string& word) {
+               return std::isalpha(static_cast<unsigned char>(word.front())) ||
+                      static_cast<unsigned char>(word.front()) >= 0x80;
+           });
+}
+
+/// The unit that a band declares. Nothing where it declares none; without a length where it is not known.
 std::optional<Unit> band_unit(const Place& place) {
-    std::string unit = place.band_unit;
-    std::transform(unit.begin(), unit.end(), unit.begin(), [](unsigned char c) { return std::tolower(c); });
-    static const std::map<std::string, double> known = {{"m", 1.0},
-                                                        {"metre", 1.0},
-                                                        {"meter", 1.0},
-                                                        {"ft", 0.3048},
-                                                        {"foot", 0.3048},
-                                                        {"feet", 0.3048},
+    const std::vector<std::string> words = words_of(place.band_unit);
+    std::string unit;
+    for (const std::string& word : words) unit += word;
+    static const std::set<std::string> none{"", "unknown", "undefined", "unspecified", "none", "na", "n/a"};
+    if (none.count(unit) > 0) return {};
+    if (says_metres(words)) return Unit{1.0, place.band_unit};
+    static const std::map<std::string, double> known = {{"ft", foot},
+                                                        {"foot", foot},
+                                                        {"feet", foot},
+                                                        {"internationalfoot", foot},
+                                                        {"internationalfeet", foot},
+                                                        {"footinternational", foot},
+                                                        {"feetinternational", foot},
+                                                        {"ftint", foot},
+                                                        {"ftintl", foot},
+                                                        {"usft", us_foot},
+                                                        {"ftus", us_foot},
+                                                        {"usfoot", us_foot},
+                                                        {"usfeet", us_foot},
+                                                        {"footus", us_foot},
+                                                        {"feetus", us_foot},
+                                                        {"surveyfoot", us_foot},
+                                                        {"surveyfeet", us_foot},
+                                                        {"ussurveyfoot", us_foot},
+                                                        {"ussurveyfeet", us_foot},
+                                                        {"footussurvey", us_foot},
+                                                        {"yd", 0.9144},
+                                                        {"yard", 0.9144},
+                                                        {"yards", 0.9144},
+                                                        {"in", 0.0254},
+                                                        {"inch", 0.0254},
+                                                        {"inches", 0.0254},
+                                                        {"km", 1000.0},
+                                                        {"kilometre", 1000.0},
+                                                        {"kilometres", 1000.0},
+                                                        {"kilometer", 1000.0},
+                                                        {"kilometers", 1000.0},
+                                                        {"dm", 0.1},
+                                                        {"decimetre", 0.1},
+                                                        {"decimetres", 0.1},
+                                                        {"decimeter", 0.1},
+                                                        {"decimeters", 0.1},
                                                         {"cm", 0.01},
                                                         {"centimetre", 0.01},
+                                                        {"centimetres", 0.01},
                                                         {"centimeter", 0.01},
-                                                        {"dm", 0.1},
+                                                        {"centimeters", 0.01},
                                                         {"mm", 0.001},
-                                                        {"km", 1000.0},
-                                                        {"us-ft", us_foot},
-                                                        {"ftus", us_foot},
-                                                        {"us survey foot", us_foot},
-                                                        {"foot_us", us_foot},
-                                                        {"us_survey_foot", us_foot}};
+                                                        {"millimetre", 0.001},
+                                                        {"millimetres", 0.001},
+                                                        {"millimeter", 0.001},
+                                                        {"millimeters", 0.001}};
     const auto found = known.find(unit);
-    if (found == known.end()) return {};
-    return Unit{found->second, place.band_unit};
+    return Unit{found == known.end() ? NAN : found->second, place.band_unit};
 }
 
 /// The unit of the vertical part of the CRS. Nothing where it has none.
@@ -92,9 +153,13 @@ std::optional<Unit> vertical_unit(const Place& place) {
     return unit ? unit : band_unit(place);
 }
 
+bool contradict(const std::optional<Unit>& a, const std::optional<Unit>& b) {
+    return a && b && !(std::abs(a->metres - b->metres) <= any_foot * b->metres);
+}
+
 /// Turns values into metres. The detour over a VRT drops the old unit, which gdal_translate alone would
-/// carry on, and the vertical CRS.
-std::string scale_line(const Place& place, const Unit& unit) {
+/// carry on, and the vertical CRS. A scale and an offset of the stored numbers are applied before.
+std::string scale_line(const Place& place, double metres) {
     std::string crs;
     if (place.crs && place.crs->IsCompound()) {
         const OGRSpatialReference flat = horizontal(*place.crs);
@@ -109,24 +174,48 @@ std::string scale_line(const Place& place, const Unit& unit) {
     }
     const std::string target = sibling(place.file, "_metres");
     const std::string between = std::filesystem::path(target).replace_extension(".vrt").string();
+    std::string before, source = shell(place.file.string());
+    if (place.scaled) {
+        const std::filesystem::path name = sibling(place.file, "_unscaled");
+        const std::string plain = shell(std::filesystem::path(name).replace_extension(".vrt").string());
+        before = fmt::format("gdal_translate -of VRT -unscale -ot Float64 {} {} && ", source, plain), source = plain;
+    }
     return fmt::format(
-        "gdalbuildvrt {}{} {} && gdal_translate -ot Float32 -scale 0 1 0 {:.12g} -a_nodata -9999 "
+        "{}gdalbuildvrt {}{} {} && gdal_translate -ot Float32 -scale 0 1 0 {:.12g} -a_nodata -9999 "
         "{} {}",
-        crs, shell(between), shell(place.file.string()), unit.metres, shell(between), shell(target));
+        before, crs, shell(between), source, metres, shell(between), shell(target));
 }
 
 [[noreturn]] void refuse_unit(const Place& place, const char* what, const Unit& unit) {
+    if (std::isnan(unit.metres))
+        throw UserError(
+            fmt::format("{}: its {} are declared in \"{}\", which is no length that is known here; expected metres; "
+                        "where one is 0.5 m, for example, run: {}",
+                        place.file.string(), what, unit.name, scale_line(place, 0.5)));
     throw UserError(fmt::format("{}: its {} are declared in {}; expected metres; run: {}", place.file.string(), what,
-                                unit.name, scale_line(place, unit)));
+                                unit.name, scale_line(place, unit.metres)));
+}
+
+/// The band and the CRS declare the unit of elevations, and not the same.
+[[noreturn]] void refuse_contradiction(const Place& place, const Unit& of_band, const Unit& of_crs) {
+    const auto cure = [&](const Unit& unit) {
+        if (std::isnan(unit.metres))
+            return fmt::format("where one is 0.5 m, for example, run: {}", scale_line(place, 0.5));
+        return fmt::format("where {} is true run: {}", unit.name, scale_line(place, unit.metres));
+    };
+    throw UserError(
+        fmt::format("{}: its elevations are declared in \"{}\" by the band and in \"{}\" by the CRS; expected metres "
+                    "alone; {}; {}",
+                    place.file.string(), of_band.name, of_crs.name, cure(of_crs), cure(of_band)));
 }
 
 [[noreturn]] void refuse_plane(const Place& place, const std::string& found) {
     const std::optional<Unit> up = vertical_unit(place);
-    const bool metres = is_metre(up);
+    const bool metres = is_metre(up) || std::isnan(up->metres);
     const std::filesystem::path input = metres ? place.file : std::filesystem::path(sibling(place.file, "_metres"));
     throw UserError(fmt::format(
         "{}: {}{}; expected a projected CRS in metres; run: {}{}{}", place.file.string(), found,
-        metres ? "" : ", and its elevations are in " + up->name, metres ? "" : scale_line(place, *up) + " && ",
+        metres ? "" : ", and its elevations are in " + up->name, metres ? "" : scale_line(place, up->metres) + " && ",
         warp_line(input, metric_crs(place), "_utm"), metres ? " (its elevations are taken as metres)" : ""));
 }
 
@@ -235,6 +324,8 @@ void require_metres(const Place& place, std::vector<std::string>& log) {
                                             unit ? unit : "not the metre"));
         require_true_lengths(place);
     }
+    if (const auto band = band_unit(place), up = crs_unit(place); contradict(band, up))
+        refuse_contradiction(place, *band, *up);
     if (const auto up = vertical_unit(place); !is_metre(up)) refuse_unit(place, "elevations", *up);
 }
 

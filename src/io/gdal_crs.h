@@ -37,10 +37,12 @@ struct Place {
     const OGRSpatialReference* crs = nullptr;  ///< null: unknown
     std::array<double, 2> centre{};            ///< of what is used, in the CRS
     std::string band_unit;                     ///< unit of the elevations that the band declares, or empty
+    bool scaled = false;                       ///< numbers are stored with a scale or an offset
 };
 
 /// Checks that map coordinates (and elevations) are metres. UserError with a gdalwarp or gdal_translate line
-/// that cures it. Causes are a geographic CRS, another unit than metre, and a vertical unit other than metre. So are
+/// that cures it. Causes are a geographic CRS, another unit than metre, and a vertical unit other than metre. So are a
+/// unit that is not known, one of the band that is not that of the CRS's heights, and
 /// lengths on the map that are not those on the ground. Remarks go to `log`.
 void require_metres(const Place& place, std::vector<std::string>& log);
 

@@ -107,7 +107,8 @@ Raster GdalReader::read_dem(const std::filesystem::path& file, const DemRequest&
                             std::vector<std::string>& log) const {
     const RasterFile raster(file, gdal::Meaning::elevation, log);
     const auto used = request.window.value_or(raster.extent());
-    gdal::Place place{file, &raster.crs(), {0.5 * (used[0] + used[2]), 0.5 * (used[1] + used[3])}, raster.unit()};
+    gdal::Place place{
+        file, &raster.crs(), {0.5 * (used[0] + used[2]), 0.5 * (used[1] + used[3])}, raster.unit(), raster.scaled()};
     gdal::require_metres(place, log);
     remark_named_feet(raster, log);
     const auto window = checked_window(raster, request);

@@ -49,8 +49,7 @@ RasterFile::RasterFile(const std::filesystem::path& file, Meaning meaning, std::
     }
     scale_ = band_->GetScale();
     offset_ = band_->GetOffset();
-    if (scale_ != 1.0 || offset_ != 0.0)
-        log.push_back(fmt::format("{}: values are stored number * {:g} + {:g}", name(), scale_, offset_));
+    if (scaled()) log.push_back(fmt::format("{}: values are stored number * {:g} + {:g}", name(), scale_, offset_));
     if (const char* unit = band_->GetUnitType()) unit_ = unit;
     take_geotransform();
 }

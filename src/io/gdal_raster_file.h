@@ -27,6 +27,7 @@ public:
     std::array<double, 4> extent() const;           ///< xmin, ymin, xmax, ymax of the pixels' outer edges
     const OGRSpatialReference& crs() const { return crs_; }
     const std::string& unit() const { return unit_; }
+    bool scaled() const { return scale_ != 1.0 || offset_ != 0.0; }  ///< what is stored are other numbers
     /// What the file says of itself and of its band, in words.
     std::string description() const;
     const std::filesystem::path& file() const { return file_; }

@@ -22,7 +22,7 @@ public:
 
     std::shared_ptr<const GisReader> lasting() const override { return std::make_shared<GdalReader>(); }
 
-    /// The unit is that of the band or, where that names no length, of the CRS's heights.
+    /// The unit is that of the band or, where that declares none, of the CRS's heights.
     void require_metres(const std::filesystem::path& file) const override;
 
     RasterPlace place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
@@ -36,6 +36,10 @@ public:
     /// A reprojected raster comes in square pixels of the mean area of its own, bilinear.
     Raster read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
                        const std::string& crs_wkt, std::vector<std::string>& log) const override;
+
+    /// Reprojected likewise, each pixel the file's nearest: a blend of two would be above 0 beyond the edge.
+    Raster read_mask(const std::filesystem::path& file, const std::array<double, 4>& extent, const std::string& crs_wkt,
+                     std::vector<std::string>& log) const override;
 
     /// Nodes that the raster does not cover by half a cell are NaN; UserError when it covers none.
     Raster read_onto(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,

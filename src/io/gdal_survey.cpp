@@ -205,7 +205,7 @@ Raster GdalReader::read_deposit(const fs::path& file, const GridGeometry& grid, 
                                 std::vector<std::string>& log) const {
     std::vector<std::string> said_again_below;
     const gdal::RasterFile raster(file, gdal::Meaning::any, said_again_below);
-    gdal::require_metre_values({file, &raster.crs(), {}, raster.unit()});
+    gdal::require_metre_values({file, &raster.crs(), {}, raster.unit(), raster.scaled()});
     std::array<double, 4> extent = raster.extent();
     if (!crs_wkt.empty()) {
         const OGRSpatialReference terrain = gdal::crs_from_wkt(crs_wkt);

@@ -8,18 +8,20 @@
 namespace frana {
 namespace {
 
-/// Of `count` values, `stride` apart: each with the pairs around it of which both are known.
-void smooth_line(const double* from, double* to, Index count, Index stride, Index reach) {
+/// Of `count` values, `stride` apart: each with the pairs around it of which both are known. The mean is over `reach`
+/// cells on either side of a node's middle, so of the outermost pair a part counts.
+void smooth_line(const double* from, double* to, Index count, Index stride, double reach) {
+    const auto whole = static_cast<Index>(std::ceil(reach - 0.5));
     for (Index k = 0; k < count; ++k) {
         const double middle = from[k * stride];
-        double sum = middle;
-        Index known = 1;
-        for (Index d = 1; d <= std::min({reach, k, count - 1 - k}); ++d) {
+        double sum = middle, known = 1.0;
+        for (Index d = 1; d <= std::min({whole, k, count - 1 - k}); ++d) {
             const double pair = from[(k - d) * stride] + from[(k + d) * stride];
             if (std::isnan(pair)) break;  // beyond a gap is other ground
-            sum += pair, known += 2;
+            const double part = std::min(1.0, reach + 0.5 - static_cast<double>(d));
+            sum += part * pair, known += 2.0 * part;
         }
-        to[k * stride] = sum / static_cast<double>(known);
+        to[k * stride] = sum / known;
     }
 }
 
@@ -43,11 +45,16 @@ std::uint8_t class_of(const Raster& bed, Index i, Index j, const GroundBorders& 
 
 }  // namespace
 
+bool averages(double length, double cell) {
+    constexpr double round_off = 1e-9;
+    return length > (1.0 + round_off) * cell;
+}
+
 Raster smoothed(const Raster& raster, double length) {
     const GridGeometry& g = raster.geometry;
     const double most = static_cast<double>(std::max(g.nx, g.ny));
-    const auto reach = static_cast<Index>(std::min(std::floor(0.5 * length / g.cell), most));
-    if (reach < 1) return raster;
+    const double reach = std::min(0.5 * length / g.cell, most);
+    if (!averages(length, g.cell)) return raster;
     Raster rows = raster, all = raster;
     for (Index j = 0; j < g.ny; ++j)
         smooth_line(raster.values.data() + j * g.nx, rows.values.data() + j * g.nx, g.nx, 1, reach);

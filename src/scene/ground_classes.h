@@ -16,8 +16,11 @@ struct GroundBorders {
     std::array<double, 3> curvature{-0.002, 0.002, 0.01};
 };
 
-/// Mean of a raster over squares of about that side, row by row and column by column. A node counts only together with
-/// its mirror node. So a plane stays what it is up to its edges and to nodata.
+/// Whether squares of that side reach beyond the cell around a node, so that a mean over them is another number [m].
+bool averages(double length, double cell);
+
+/// Mean of a raster over squares of that side, row by row and column by column. Of cells that the square cuts a part
+/// counts. A node counts only together with its mirror node. So a plane stays what it is up to its edges and to nodata.
 Raster smoothed(const Raster& raster, double length);
 
 /// Curvature of the contour at a node, positive where it is hollow towards the valley. For radius R it is 1/R [1/m]. 0

@@ -74,13 +74,16 @@ private:
         for (std::size_t ground = 0; ground < shares.size(); ++ground)
             text += fmt::format("{}{:.3g} % {}", ground == 0 ? "" : ", ", shares[ground], salm::ground_names[ground]);
         const GroundBorders all = borders();
+        const double cell = scene_.bed.geometry.cell;
+        const std::string mean = averages(all.length, cell)
+                                     ? fmt::format("terrain averaged over {:.6g} m", all.length)
+                                     : fmt::format("terrain as its cells of {:.6g} m have it", cell);
         scene_.log.push_back(fmt::format(
             "{}: size {}{}, {:.6g} years: {}; what divides the classes is a choice of frana's, not of the table's: "
-            "terrain "
-            "averaged over {:.6g} m, flat below {:.6g} degrees, plan curvatures {:.6g}, {:.6g}, {:.6g} 1/m",
+            "{}, flat below {:.6g} degrees, plan curvatures {:.6g}, {:.6g}, {:.6g} 1/m",
             case_.place("material.bed.table"), salm::size_names[size],
             case_.given("material.bed.volume_class") ? "" : fmt::format(" ({:.6g} m3 are released)", released_),
-            case_.number("material.bed.return_period"), text, all.length, all.flat_below_deg, all.curvature[0],
+            case_.number("material.bed.return_period"), text, mean, all.flat_below_deg, all.curvature[0],
             all.curvature[1], all.curvature[2]));
     }
 

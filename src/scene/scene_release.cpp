@@ -183,7 +183,8 @@ private:
     void set_depth(Release& release) const {
         const bool normal = case_.word(key("thickness")) == "normal";
         if (given("mask")) {
-            const Raster mask = raster(case_.path(key("mask")));
+            const Raster mask =
+                reader_.read_mask(case_.path(key("mask")), bed_.geometry.pixel_extent(), bed_.crs_wkt, log_);
             release.depth_field = depth_on(mask.geometry, true, marks_above_zero(mask));
             for (std::size_t k = 0; k < mask.values.size(); ++k)
                 if (!(mask.values[k] > 0.0)) release.depth_field->values[k] = Raster::nodata;

@@ -36,29 +36,58 @@ double rise_across(const Polyline& line, const Raster& bed) {
     return length > 0.0 ? sum / length : 0.0;
 }
 
-/// The piece of each segment that lies between two bounds, axis by axis (Liang & Barsky 1984).
-bool comes_onto(const Polyline& line, const std::array<double, 4>& extent) {
-    for (std::size_t k = 0; k + 1 < line.size(); ++k) {
-        double from = 0.0, to = 1.0;
-        for (int axis = 0; axis < 2; ++axis) {
-            const double start = line[k][axis], way = line[k + 1][axis] - start;
-            const double low = extent[static_cast<std::size_t>(axis)] - start,
-                         high = extent[static_cast<std::size_t>(axis) + 2] - start;
-            if (way == 0.0) {
-                if (low > 0.0 || high < 0.0) to = -1.0;
-                continue;
-            }
-            from = std::max(from, std::min(low / way, high / way));
-            to = std::min(to, std::max(low / way, high / way));
+namespace {
+
+/// The share of a segment that lies between two bounds, axis by axis (Liang & Barsky 1984); below 0: none.
+double share_within(const Vec2& begin, const Vec2& end, const std::array<double, 4>& extent) {
+    double from = 0.0, to = 1.0;
+    for (int axis = 0; axis < 2; ++axis) {
+        const double start = begin[axis], way = end[axis] - start;
+        const double low = extent[static_cast<std::size_t>(axis)] - start,
+                     high = extent[static_cast<std::size_t>(axis) + 2] - start;
+        if (way == 0.0) {
+            if (low > 0.0 || high < 0.0) return -1.0;
+            continue;
         }
-        if (from <= to) return true;
+        from = std::max(from, std::min(low / way, high / way));
+        to = std::min(to, std::max(low / way, high / way));
     }
+    return from <= to ? to - from : -1.0;
+}
+
+double length_within(const Polyline& line, const std::array<double, 4>& extent) {
+    double length = 0.0;
+    for (std::size_t k = 0; k + 1 < line.size(); ++k)
+        length += std::max(0.0, share_within(line[k], line[k + 1], extent)) * (line[k + 1] - line[k]).norm();
+    return length;
+}
+
+/// What leaves is taken away beyond the outermost nodes, wherever within the half cell that is. A line that ends at the
+/// terrain's edge has some of it at either end.
+void remark_on_edge(const std::string& name, const Polyline& line, const GridGeometry& grid,
+                    std::vector<std::string>& log) {
+    const double at_edge =
+        length_within(line, grid.pixel_extent()) - length_within(line, {grid.x0, grid.y0, grid.x_max(), grid.y_max()});
+    if (at_edge <= 2.0 * grid.cell) return;
+    log.push_back(
+        fmt::format("section {}: found {:.4g} m of its line beyond the outermost nodes, within half a cell of the "
+                    "terrain's edge; expected it among them; what leaves the terrain there counts in part; draw it a "
+                    "cell or more farther in",
+                    name, at_edge));
+}
+
+}  // namespace
+
+bool comes_onto(const Polyline& line, const std::array<double, 4>& extent) {
+    for (std::size_t k = 0; k + 1 < line.size(); ++k)
+        if (share_within(line[k], line[k + 1], extent) >= 0.0) return true;
     return false;
 }
 
 std::vector<Section> read_sections(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems) {
     std::vector<Section> sections;
-    const auto e = (scene.wider ? scene.wider->grid : scene.bed.geometry).pixel_extent();
+    const GridGeometry& whole = scene.wider ? scene.wider->grid : scene.bed.geometry;
+    const auto e = whole.pixel_extent();
     for (Index i = 0; i < file.count("section"); ++i) {
         const std::string prefix = fmt::format("section.{}.", i);
         Polyline line;
@@ -80,6 +109,7 @@ std::vector<Section> read_sections(const CaseFile& file, const GisReader& reader
                 "section {}: found corners of its line beyond the terrain; expected all of it there; nothing "
                 "is counted beyond",
                 file.word(prefix + "name")));
+        if (file.word("boundary.sides") == "open") remark_on_edge(file.word(prefix + "name"), line, whole, scene.log);
         sections.push_back({file.word(prefix + "name"), line, rise_across(line, scene.bed) <= 0.0});
     }
     return sections;

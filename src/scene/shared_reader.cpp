@@ -109,6 +109,12 @@ Raster SharedReader::read_raster(const std::filesystem::path& file, const std::a
                     [&](auto& remarks) { return inner_.read_raster(file, extent, crs_wkt, remarks); });
 }
 
+Raster SharedReader::read_mask(const std::filesystem::path& file, const std::array<double, 4>& extent,
+                               const std::string& crs_wkt, std::vector<std::string>& log) const {
+    return recalled(rasters_, fmt::format("mask {} {} {}", file.string(), extent, crs_wkt), log,
+                    [&](auto& remarks) { return inner_.read_mask(file, extent, crs_wkt, remarks); });
+}
+
 Raster SharedReader::read_onto(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
                                std::vector<std::string>& log) const {
     return recalled(rasters_, fmt::format("onto {} {} {}", file.string(), text_of(grid), crs_wkt), log,

@@ -28,6 +28,8 @@ public:
                                                            const std::string& crs_wkt) const override;
     Raster read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
                        const std::string& crs_wkt, std::vector<std::string>& log) const override;
+    Raster read_mask(const std::filesystem::path& file, const std::array<double, 4>& extent, const std::string& crs_wkt,
+                     std::vector<std::string>& log) const override;
     Raster read_onto(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
                      std::vector<std::string>& log) const override;
     Raster read_deposit(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,

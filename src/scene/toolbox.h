@@ -70,6 +70,11 @@ public:
     /// be square within 1e-6; NaN where nodata.
     virtual Raster read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
                                const std::string& crs_wkt, std::vector<std::string>& log) const = 0;
+    /// The same of a raster whose values only tell where something is. A reprojected pixel is one of the file's.
+    virtual Raster read_mask(const std::filesystem::path& file, const std::array<double, 4>& extent,
+                             const std::string& crs_wkt, std::vector<std::string>& log) const {
+        return read_raster(file, extent, crs_wkt, log);
+    }
     /// The same, averaged / interpolated onto `grid`.
     virtual Raster read_onto(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
                              std::vector<std::string>& log) const = 0;

@@ -11,6 +11,7 @@
 #include "run/folder/comparison.h"
 #include "run/folder/products.h"
 #include "run/folder/release_results.h"
+#include "scene/bed_over.h"
 #include "scene/case_file.h"
 #include "terrain/part_of.h"
 
@@ -37,6 +38,11 @@ Raster around(const EnsembleBase& base) {
     return like;
 }
 
+/// What the case holds of the terrain, and what is needed to know which way a path falls.
+Raster bed_under(const Polyline& path, const EnsembleBase& base) {
+    return bed_over(base.bed, base.wider.get(), cells_of(path, base.whole).of(base.whole));
+}
+
 /// Nothing lies where the flow never came.
 void zero_where_unknown(Raster& raster) {
     for (double& value : raster.values)
@@ -54,7 +60,6 @@ UserError lacks(const SurveyedEvent& event, const std::string& key, const std::s
 EventSurvey::EventSurvey(const SurveyedEvent& event, const EnsembleBase& base)
     : objective_(event.objective),
       crs_wkt_(base.bed.crs_wkt),
-      bed_(base.bed),
       limit_(base.footprint_depth),
       correlation_(event.errors.correlation) {
     if (!base.survey) throw lacks(event, "survey.footprint", "the surveyed footprint", "name it there");
@@ -71,7 +76,10 @@ EventSurvey::EventSurvey(const SurveyedEvent& event, const EnsembleBase& base)
         later_ = may_be_released_later_on(release_sources(CaseFile::read(event.runs.case_file)), like);
     survey_.footprint = *base.footprint;
     perimeter_ = perimeter_of(*base.survey);
-    if (!survey_.path && !base.path.empty()) survey_.path = base.path;
+    if (survey_.path)
+        bed_ = bed_under(*survey_.path, base);
+    else if (!base.path.empty())
+        survey_.path = base.path;
     if (counts(Evidence::runout) && !survey_.path)
         throw lacks(event, "survey.path", "the path", "draw it, since no steepest path from the release is known");
     read_gauges(event);
@@ -135,7 +143,8 @@ public:
     void end(const Frame& last) override {
         const std::vector<ProductRaster> rasters = product_rasters(last, event_.crs_wkt_);
         if (!find_product(rasters, "peak_depth")) return;
-        const Comparison found = compare_rasters(rasters, &event_.bed_, event_.limit_, event_.survey_);
+        const Comparison found =
+            compare_rasters(rasters, event_.bed_ ? &*event_.bed_ : nullptr, event_.limit_, event_.survey_);
         scores_.iou = found.trace.areas.iou();
         if (std::isnan(found.trace.boundary.rms)) return;  // nothing flowed
         scores_.boundary = found.trace.boundary.mean;

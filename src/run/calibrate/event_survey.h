@@ -34,7 +34,7 @@ private:
 
     std::vector<Evidence> objective_;
     std::string crs_wkt_;
-    Raster bed_;
+    std::optional<Raster> bed_;    ///< under a path that was drawn, which may be uphill; nothing without one
     std::optional<Raster> later_;  ///< 1: a release may enter there after the start
     Survey survey_;
     double limit_ = 0.1;        ///< deeper counts as covered [m]

@@ -11,8 +11,8 @@
 #include "run/folder/record_file.h"
 #include "run/folder/run_folder.h"
 #include "run/run_loop.h"
+#include "scene/bed_over.h"
 #include "scene/build_scene.h"
-#include "terrain/part_of.h"
 #include "vtk_io/barrier_mesh.h"
 
 namespace frana {
@@ -143,9 +143,7 @@ void StudyRun::check_scenes() {
 Raster StudyRun::bed_of_finest() const {
     const PlannedRun& finest = runs_[wishes_.cells.size() - 1];
     const std::vector<ProductRaster> rasters = wider_ ? read_rasters(finest.wishes.out) : std::vector<ProductRaster>();
-    if (rasters.empty()) return bed_;
-    const auto shown = box_of(rasters.front().raster.geometry, wider_->grid);
-    return shown ? wider_->read(united(*shown, wider_->held)) : bed_;
+    return rasters.empty() ? bed_ : bed_over(bed_, wider_.get(), rasters.front().raster.geometry);
 }
 
 ConvergenceStudy StudyRun::judge() const {

@@ -68,7 +68,10 @@ EnsembleRun::EnsembleRun(EnsemblePlan plan, fs::path dir)
       dir_(std::move(dir)),
       reader_(files_),
       meshes_(meshes_in_turn()),
-      base_(ensemble_base(plan_, reader_, meshes_)) {}
+      base_(ensemble_base(plan_, reader_, meshes_)) {
+    for (std::string& remark : remarks_of_sample(plan_, base_, 0, reader_, meshes_))
+        base_.remarks.push_back(std::move(remark));
+}
 
 std::vector<Index> EnsembleRun::left_to_run(const Shard& shard, bool resume) const {
     require_room_for_ensemble(dir_);

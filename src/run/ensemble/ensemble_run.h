@@ -60,7 +60,7 @@ private:
     GdalReader files_;
     SharedReader reader_;
     MeshReader meshes_;
-    EnsembleBase base_;
+    EnsembleBase base_;  ///< its remarks are those of the first sample too
 };
 
 }  // namespace frana

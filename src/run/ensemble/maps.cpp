@@ -20,10 +20,18 @@ namespace frana {
 namespace fs = std::filesystem;
 namespace {
 
-void require_answer(const WeightedRuns& runs, const fs::path& dir) {
+std::string first_failure_of(const std::vector<SampleResult>& results) {
+    const auto first =
+        std::find_if(results.begin(), results.end(), [](const SampleResult& result) { return !result.ended(); });
+    if (first == results.end()) return "";
+    return first->message.empty() ? first->reason : first->message;
+}
+
+void require_answer(const WeightedRuns& runs, const fs::path& dir, const std::string& first_failure) {
     if (!(runs.total > 0.0))
         throw UserError(fmt::format(
-            "{}: found no run with an answer; expected one or more; the reasons are in runs.csv", dir.string()));
+            "{}: found no run with an answer{}; expected one or more; the reasons are in runs.csv", dir.string(),
+            first_failure.empty() ? "" : fmt::format(", the first one failed so: {}", first_failure)));
 }
 
 /// Where no run came there is nothing to show.
@@ -53,7 +61,7 @@ public:
         : dir_(dir), plan_(plan), base_(base), runs_(runs), summary_(summary) {}
 
     void write() {
-        require_answer(runs_, dir_);
+        require_answer(runs_, dir_, summary_.first_failure);
         fs::create_directories(dir_ / "rasters");
         fs::create_directories(dir_ / "figures");
         for (std::size_t f = 0; f < plan_.fields.size(); ++f) write_field(f);
@@ -242,6 +250,7 @@ EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const 
         summary.left_terrain += result.ended() && result.left_share > noticeable;
         summary.core_seconds += result.seconds;
     }
+    summary.first_failure = first_failure_of(results);
     const std::vector<std::string> before = files_of_last_time(dir);
     const WeightedRuns runs(plan, base,
                             kept);  // refuses peaks that are not those of the runs before anything is written
@@ -275,7 +284,7 @@ Raster probability_map(const fs::path& dir, const EnsemblePlan& plan, const Ense
                         "below which nothing is kept of the runs",
                         threshold, base.footprint_depth));
     const WeightedRuns runs(plan, base, kept);
-    require_answer(runs, dir);
+    require_answer(runs, dir, first_failure_of(kept.results));
     PixelValues pixels(base.whole);
     pixels.gather(*runs.peaks, runs.weights, 0);
     const Raster reached = pixels.reached();

@@ -24,6 +24,7 @@ struct EnsembleSummary {
     double core_seconds = 0.0;           ///< of all runs [s]
     std::optional<double> wall_seconds;  ///< of this process, where it ran them [s]
     double effective = 0.0;              ///< number of equal weights that tell as much
+    std::string first_failure;           ///< why the first run that failed did; "": none
     double failed_share = 0.0;           ///< of all weights, that of the runs that failed [1]
     bool weighted = false;               ///< weights differ
     bool maps_drawn = true;

@@ -156,6 +156,8 @@ Json record_of(const EnsemblePlan& plan, const EnsembleBase& base, const Ensembl
     if (plan.hazard) json["hazard"] = hazard_json(*plan.hazard, summary);
     const Json sensitivity = sensitivity_json(plan, base, results);
     if (!sensitivity.empty()) json["sensitivity"] = sensitivity;
+    json["remarks"] = base.remarks;
+    if (summary.failed > 0) json["first_failure"] = summary.first_failure;
     json["files"] = summary.files;
     return json;
 }
@@ -196,6 +198,8 @@ std::string page_of(const EnsemblePlan& plan, const EnsembleBase& base, const En
     page += fmt::format("\n\nMethod \"{}\", seed {}. What varies:\n\n", plan.method_name, plan.seed);
     for (const Vary& vary : plan.vary)
         page += vary.prior.empty() ? fmt::format("- `{}`\n", vary.key) : fmt::format("- {}\n", vary.prior);
+    if (!base.remarks.empty()) page += "\nRemarks on the case:\n\n";
+    for (const std::string& remark : base.remarks) page += fmt::format("- {}\n", remark);
     page += "\nFiles:\n\n";
     for (const std::string& file : summary.files) page += fmt::format("- {}\n", file);
     return page + "\nA share of runs is the probability of an event only as far as what varies, and how, is known.\n";

@@ -80,7 +80,7 @@ void mark_mask(const std::string& file, const std::string& crs_wkt, Raster& mark
     const GridGeometry& grid = marks.geometry;
     const double half = 0.5 * grid.cell;
     std::vector<std::string> said_by_the_scene;
-    const Raster mask = GdalReader().read_raster(
+    const Raster mask = GdalReader().read_mask(
         file, {grid.x(0) - half, grid.y(0) - half, grid.x(grid.nx - 1) + half, grid.y(grid.ny - 1) + half}, crs_wkt,
         said_by_the_scene);
     for (Index j = 0; j < grid.ny; ++j)
