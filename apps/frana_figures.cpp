@@ -91,6 +91,7 @@ void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::s
         source.gauges.push_back({run_case.word(table + "name"), Vec2(point[0], point[1])});
     }
     for (Index i = 0; i < run_case.count("section"); ++i) read_section(run_case, i, source, warnings);
+    source.inflows = inflow_places(run_case, source.bed.crs_wkt, warnings);
     for (Index i = 0; i < run_case.count("stage"); ++i)
         source.in_3d |= run_case.word(fmt::format("stage.{}.model", i)) == "solid_flow";
     if (!run_case.has("survey.footprint") || source.bed.values.empty()) return;

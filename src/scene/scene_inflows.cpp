@@ -87,7 +87,9 @@ private:
 
     std::optional<Inflow> read_area(Problems& problems) {
         Hydrograph table;
-        bool good = attempt(problems, "area", [&] { place_patches(polygons()); });
+        bool good = attempt(problems, "area", [&] {
+            place_patches(read_outline(case_, prefix_ + "area", reader_, bed_.crs_wkt, scene_.log));
+        });
         good &= attempt(problems, given("table") ? "table" : "volume", [&] {
             table = hydrograph();
             require_room(table);
@@ -101,15 +103,6 @@ private:
         inflow_.speed.assign(table.time.size(), 0.0);
         inflow_.layer = water_ ? 0.0 : layer_of(table.volume() / inflow_.area);
         return inflow_;
-    }
-
-    Polygons polygons() {
-        const std::string key = prefix_ + "area";
-        if (case_.is_text(key)) return reader_.read_polygons(case_.path(key), bed_.crs_wkt, scene_.log);
-        Polygons drawn;
-        drawn.parts.push_back({{case_.points(key)}});
-        drawn.source = key;
-        return drawn;
     }
 
     /// As a release of that outline has its points; each gets what the outline covers of its patch.
@@ -432,6 +425,15 @@ private:
 };
 
 }  // namespace
+
+Polygons read_outline(const CaseFile& file, const std::string& key, const GisReader& reader, const std::string& crs_wkt,
+                      std::vector<std::string>& log) {
+    if (file.is_text(key)) return reader.read_polygons(file.path(key), crs_wkt, log);
+    Polygons drawn;
+    drawn.parts.push_back({{file.points(key)}});
+    drawn.source = key;
+    return drawn;
+}
 
 void read_inflows(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems) {
     for (Index i = 0; i < file.count("inflow"); ++i) {

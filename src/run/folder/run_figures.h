@@ -29,6 +29,7 @@ struct FigureSource {
     std::vector<Profile> profiles;
     std::vector<Gauge> gauges;
     std::vector<Section> sections;
+    std::vector<InflowPlace> inflows;
     bool in_3d = false;                    ///< the case has a stage of 3D points
     std::vector<BarrierTop> barrier_tops;  ///< in the case's order
     std::vector<Barrier> barriers;         ///< with what they stand on

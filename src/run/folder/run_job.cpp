@@ -202,6 +202,7 @@ FigureSource figure_source(const Scene& scene, const Raster& bed, const fs::path
     source.profiles = scene.profiles;
     source.gauges = scene.gauges;
     source.sections = scene.sections;
+    source.inflows = record.inflows;
     source.in_3d = scene.solid.has_value();
     source.barrier_tops = tops_of(scene);
     source.barriers = scene.barriers;

@@ -177,6 +177,7 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     record.start = start_of_what_comes_in(scene);
     record.page = asks_for_page(file);
     record.warnings = scene.log;
+    record.inflows = inflow_places(file, scene.bed.crs_wkt, record.warnings);
     return record;
 }
 

@@ -12,6 +12,7 @@
 #include "run/folder/barrier_hits.h"
 #include "run/folder/barrier_results.h"
 #include "run/folder/checkpoint.h"
+#include "run/folder/inflow_results.h"
 #include "run/folder/release_results.h"
 #include "run/run_loop.h"
 #include "scene/scene.h"
@@ -62,6 +63,7 @@ struct RunRecord {
     SurveyFiles survey_files;
     std::vector<BarrierSource> barrier_sources;
     std::vector<ReleaseSource> release_sources;
+    std::vector<InflowPlace> inflows;
     RunSummary summary;
     std::vector<DrawnFigure> figures;
     std::vector<InsituTally> insitu;
