@@ -55,7 +55,9 @@ void read_record(const fs::path& run_dir, FigureSource& source) {
         source.title = json.at("title").get<std::string>();
         source.footer = json.at("caption").get<std::string>();
         source.date = json.value("started", std::string()).substr(0, 10);
-        source.footprint_depth = json.at("results").at("footprint_depth").get<double>();
+        const nlohmann::json& results = json.at("results");
+        source.footprint_depth = results.at("footprint_depth").get<double>();
+        source.front_origin = results.value("front_from", source.front_origin);  // older runs have none
     } catch (const nlohmann::json::exception&) {
         throw UserError(
             fmt::format("{}: is not what a run leaves there; expected the record of a finished run; "

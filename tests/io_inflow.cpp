@@ -110,9 +110,11 @@ TEST_CASE("A flood leaves its budget, and a section its table, figure and lines 
     CHECK(passed < kVolume);
     CHECK(json["sections"][0]["towards"][0] == 1.0);
     const std::string report = text_of(dir / "report.md");
-    for (const char* text : {"## Sections", "| bridge | 90 degrees from north |", "came in by inflows",
-                             "figures/sections_discharge.png", "inflow torrent: 240 m3"})
+    for (const char* text :
+         {"## Sections", "| bridge | 90 degrees from north |", "came in by inflows", "figures/sections_discharge.png",
+          "inflow torrent: 240 m3", "| farthest front from the middle of inflow torrent |"})
         CHECK_THAT(report, Contains(text));
+    CHECK(json["results"]["front_from"] == "the middle of inflow torrent");
     CHECK(fs::file_size(dir / "figures" / "sections_discharge.png") > 1000);
 }
 

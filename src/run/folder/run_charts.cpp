@@ -163,7 +163,7 @@ ChartFigure motion_chart(const FigureSource& source, const Table& history) {
         errors{"relative error [1]", {}, true, {}, 1.0};
     speed.curves = {curve("fastest, along the bed", t, history.column("max_speed")),
                     curve("mean", t, history.column("mean_speed"))};
-    front.curves = {curve("from the release's centre", t, history.column("front"))};
+    front.curves = {curve("from " + source.front_origin, t, history.column("front"))};
     errors.curves = {curve("mass", t, sizes(history.column("mass_error"))),
                      curve("mass, particles to grid", t, sizes(history.column("p2g_mass_error"))),
                      curve("momentum, particles to grid", t, sizes(history.column("p2g_momentum_error")))};

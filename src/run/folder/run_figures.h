@@ -30,6 +30,8 @@ struct FigureSource {
     std::vector<Gauge> gauges;
     std::vector<Section> sections;
     std::vector<InflowPlace> inflows;
+    /// That the front is measured from.
+    std::string front_origin = "the release's centre";
     bool in_3d = false;                    ///< the case has a stage of 3D points
     std::vector<BarrierTop> barrier_tops;  ///< in the case's order
     std::vector<Barrier> barriers;         ///< with what they stand on

@@ -203,6 +203,7 @@ FigureSource figure_source(const Scene& scene, const Raster& bed, const fs::path
     source.gauges = scene.gauges;
     source.sections = scene.sections;
     source.inflows = record.inflows;
+    source.front_origin = record.front_origin;
     source.in_3d = scene.solid.has_value();
     source.barrier_tops = tops_of(scene);
     source.barriers = scene.barriers;

@@ -64,6 +64,8 @@ struct RunRecord {
     std::vector<BarrierSource> barrier_sources;
     std::vector<ReleaseSource> release_sources;
     std::vector<InflowPlace> inflows;
+    /// That the front is measured from.
+    std::string front_origin = "the release's centre";
     RunSummary summary;
     std::vector<DrawnFigure> figures;
     std::vector<InsituTally> insitu;
