@@ -273,6 +273,9 @@ TEST_CASE("A flood that takes up its bed grows from what came in", "[program][in
     REQUIRE(taken > 0.1 * kVolume);
     CHECK_THAT(text_of(dir / "report.md"),
                Contains(fmt::format("(its mass grew {:.3g} times)", (kVolume + taken) / kVolume)));
+    const std::string caption = record_of(dir)["caption"];  // that of another growth is another
+    for (const char* text : {"erodible.law growth, ", "erodible.growth 0.01 1/m, ", "erodible.depth 0.5 m, "})
+        CHECK_THAT(caption, Contains(text));
 }
 
 TEST_CASE("A growth that the steepest path would make more than a hundredfold is told before the run",

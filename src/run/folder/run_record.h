@@ -36,7 +36,7 @@ struct GivenKey {
 struct RunRecord {
     std::string name, title;
     std::string case_file;
-    std::string caption;  ///< material, terrain model and cell in a line, for figures
+    std::string caption;  ///< material, water, loose bed, terrain model and cell in a line, for figures
     std::vector<GivenKey> given;
     std::string command_line;  ///< overrides of the case: "--set a=b --until 5"; empty when none
     GridGeometry grid;
