@@ -156,10 +156,10 @@ void compare_with_survey(const Scene& scene, const Raster& bed, const fs::path& 
 }
 
 /// When the flow came to barriers that no force is known of, and barriers.csv. Trouble is a warning here as well.
-void leave_barrier_table(const Scene& scene, const fs::path& run_dir, const std::vector<ProductRaster>& rasters,
-                         RunRecord& record) {
+void leave_barrier_table(const Scene& scene, const Raster& bed, const fs::path& run_dir,
+                         const std::vector<ProductRaster>& rasters, RunRecord& record) {
     if (scene.barriers.empty()) return;
-    record.barrier_hits = hits_on(scene.barriers, rasters);
+    record.barrier_hits = hits_on(scene.barriers, rasters, &bed);
     note_contacts(record.barrier_hits, record.barriers);
     try {
         write_barrier_table(run_dir / "barriers.csv", record.barriers, record.barrier_hits);
@@ -204,6 +204,8 @@ FigureSource figure_source(const Scene& scene, const Raster& bed, const fs::path
     source.sections = scene.sections;
     source.inflows = record.inflows;
     source.front_origin = record.front_origin;
+    for (const BarrierSummary& barrier : record.barriers)
+        if (!was_hit(barrier)) source.never_hit.push_back(barrier.name);
     source.in_3d = scene.solid.has_value();
     source.barrier_tops = tops_of(scene);
     source.barriers = scene.barriers;
@@ -375,7 +377,7 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
             write_outline(run_dir, *covered, scene.output.footprint_depth);
             remark_on_unnamed_crs(*covered, scene.output.geotiff, record);
         }
-        leave_barrier_table(scene, run_dir, rasters, record);
+        leave_barrier_table(scene, bed, run_dir, rasters, record);
         leave_gis_files(scene, run_dir, rasters, record);
     });
     timed(record.summary, "survey", [&] { compare_with_survey(scene, bed, run_dir, rasters, record); });
