@@ -57,7 +57,8 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
     MapFigure map;
     map.bed = source.bed;
     map.field = product.raster.values;
-    const bool pascal = product.unit == "Pa";  // files are in SI units, pictures in those of the field
+    // Files are in SI units, pictures in those of the field.
+    const bool pascal = product.unit == "Pa" && product.name != "forest_pressure";
     if (pascal)
         for (double& value : map.field) value *= 1e-3;
     map.shown_above = source.footprint_depth;

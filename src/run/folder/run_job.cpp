@@ -213,6 +213,18 @@ FigureSource figure_source(const Scene& scene, const Raster& bed, const fs::path
     return source;
 }
 
+/// Forest::pressure on that ground. Nothing without a forest, or where its files have gone.
+Raster trees_on(const Scene& scene, const Raster& ground) {
+    if (!scene.forest) return {};
+    if (scene.forest->pressure.geometry == ground.geometry) return scene.forest->pressure;
+    if (!scene.wider || !scene.wider->fields) return {};
+    try {
+        return scene.wider->fields(ground).trees;
+    } catch (const UserError&) {
+        return {};  // the run has what it read before
+    }
+}
+
 /// The terrain that rasters and frames show: the scene's, or the part of it that the flow has reached.
 Raster shown_bed(const Scene& scene, const Simulation& simulation, const std::vector<ProductRaster>& rasters) {
     const Raster* const ground = simulation.ground();
@@ -220,13 +232,16 @@ Raster shown_bed(const Scene& scene, const Simulation& simulation, const std::ve
     return part_of(*ground, box_of(rasters.front().raster.geometry, ground->geometry).value());
 }
 
-/// As the run used it, where rasters show the terrain.
+/// Friction and forest as the run used them, where rasters show the terrain.
 void add_friction(const Scene& scene, const Simulation& simulation, std::vector<ProductRaster>& rasters) {
     const Friction* const used = simulation.friction() != nullptr ? simulation.friction() : scene.friction.get();
-    if (used == nullptr) return;
     const Raster& ground = simulation.ground() != nullptr ? *simulation.ground() : scene.bed;
+    std::vector<ProductRaster> all;
+    if (used != nullptr) all = friction_rasters(*used, ground);
+    if (auto forest = forest_raster(trees_on(scene, ground), ground)) all.push_back(std::move(*forest));
+    if (all.empty()) return;
     const GridGeometry shown = shown_bed(scene, simulation, rasters).geometry;
-    for (ProductRaster& product : friction_rasters(*used, ground)) {
+    for (ProductRaster& product : all) {
         if (!(shown == ground.geometry))
             product.raster = part_of(product.raster, box_of(shown, ground.geometry).value());
         rasters.push_back(std::move(product));
