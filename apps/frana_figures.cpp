@@ -42,6 +42,23 @@ std::string text_of(const fs::path& file) {
     return text.str();
 }
 
+/// Names of barriers that was_hit() denies.
+std::vector<std::string> never_hit_in(const nlohmann::json& json) {
+    std::vector<std::string> names;
+    for (const nlohmann::json& barrier : json.value("barriers", nlohmann::json::array())) {
+        const auto number = [&](const char* key, double otherwise) {
+            const auto found = barrier.find(key);
+            return found != barrier.end() && found->is_number() ? found->get<double>() : otherwise;
+        };
+        BarrierSummary summary;
+        summary.first_contact = number("first_contact", summary.first_contact);
+        summary.peak_force = number("peak_force", summary.peak_force);
+        summary.run_up = number("run_up", summary.run_up);
+        if (!was_hit(summary)) names.push_back(barrier.at("name").get<std::string>());
+    }
+    return names;
+}
+
 /// The part of run.json that figures need.
 void read_record(const fs::path& run_dir, FigureSource& source) {
     const fs::path file = run_dir / "run.json";
@@ -55,7 +72,10 @@ void read_record(const fs::path& run_dir, FigureSource& source) {
         source.title = json.at("title").get<std::string>();
         source.footer = json.at("caption").get<std::string>();
         source.date = json.value("started", std::string()).substr(0, 10);
-        source.footprint_depth = json.at("results").at("footprint_depth").get<double>();
+        const nlohmann::json& results = json.at("results");
+        source.footprint_depth = results.at("footprint_depth").get<double>();
+        source.front_origin = results.value("front_from", source.front_origin);  // older runs have none
+        source.never_hit = never_hit_in(json);
     } catch (const nlohmann::json::exception&) {
         throw UserError(
             fmt::format("{}: is not what a run leaves there; expected the record of a finished run; "
@@ -91,6 +111,7 @@ void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::s
         source.gauges.push_back({run_case.word(table + "name"), Vec2(point[0], point[1])});
     }
     for (Index i = 0; i < run_case.count("section"); ++i) read_section(run_case, i, source, warnings);
+    source.inflows = inflow_places(run_case, source.bed.crs_wkt, warnings);
     for (Index i = 0; i < run_case.count("stage"); ++i)
         source.in_3d |= run_case.word(fmt::format("stage.{}.model", i)) == "solid_flow";
     if (!run_case.has("survey.footprint") || source.bed.values.empty()) return;

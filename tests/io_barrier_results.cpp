@@ -12,6 +12,7 @@
 #include "observe/barriers.h"
 #include "program.h"
 #include "read_layer.h"
+#include "run/folder/barrier_hits.h"
 
 using namespace frana;
 namespace fs = std::filesystem;
@@ -163,6 +164,69 @@ TEST_CASE("The report has depth and pressure at houses, and a house that was nev
     const std::string row = fmt::format("| {:.4g} m | {:.4g} kPa | - |", house->GetFieldAsDouble("peak_depth_m"),
                                         1e-3 * house->GetFieldAsDouble("peak_dynamic_pressure_Pa"));
     CHECK_THAT(text_of(dir / "report.md"), Contains("Deepest flow at it | Dynamic pressure") && Contains(row));
+}
+
+TEST_CASE("A house that the flow reaches, but never deep enough for a contact, has neither run-up nor picture",
+          "[barriers][results]") {
+    const Village village;
+    const Outcome run =
+        call_frana(village.path(),
+                   "run case.toml --out run --quiet --set output.footprint_depth=30 --set barrier.0.height=60 "
+                   "--set 'output.formats=[\"geotiff\",\"png\"]'");
+    INFO(run.err);
+    REQUIRE(run.code == 0);
+    const fs::path dir = village.path() / "run";
+    const auto no_picture = [&] { return !fs::exists(dir / "figures" / "barrier_house_1.png"); };
+    const Json house = Json::parse(text_of(dir / "run.json"))["barriers"][0];
+    CHECK(house["first_contact"].is_null());
+    CHECK(house["run_up"].is_null());
+    CHECK(no_picture());
+    CHECK_THAT(text_of(dir / "report.md"), Contains("| house_1 | none |"));
+    REQUIRE(call_frana(village.path(), "figures run").code == 0);
+    CHECK(no_picture());
+}
+
+TEST_CASE("A house with a contact that no column came near has the surface there as its run-up",
+          "[barriers][results]") {
+    BarrierHit hit, shallow, wall;
+    hit.area = shallow.area = 64.0;
+    hit.time = 3.0, hit.surface = 101.5;
+    const double run_up = 99.0, unknown = BarrierHit::unknown;
+    const auto noted = [&](const BarrierHit& of, double known) {
+        std::vector<BarrierSummary> summaries(1);
+        summaries[0].run_up = known;
+        note_contacts({of}, summaries);
+        return summaries[0];
+    };
+    CHECK(noted(hit, unknown).run_up == 101.5);
+    CHECK(noted(hit, run_up).run_up == run_up);  // what columns tell is more exact
+    CHECK(noted(hit, unknown).first_contact == 3.0);
+    CHECK(std::isnan(noted(shallow, run_up).run_up));
+    CHECK(noted(wall, run_up).run_up == run_up);  // of its contact nothing is known
+    CHECK(was_hit(noted(hit, unknown)));
+    CHECK_FALSE(was_hit(noted(shallow, run_up)));
+    CHECK(was_hit(noted(wall, run_up)));
+}
+
+TEST_CASE("The chart of a house that nothing went over has no panel for that", "[barriers][results][figures]") {
+    if (figures::cannot_draw()) return;
+    const Village village;
+    REQUIRE(call_frana(village.path(),
+                       "run case.toml --out run --quiet --set barrier.0.height=60 --set 'output.formats=[\"png\"]'")
+                .code == 0);
+    const Json house = Json::parse(text_of(village.path() / "run" / "run.json"))["barriers"][0];
+    REQUIRE(house["overtopped_volume"] == 0.0);
+    const Pixels chart = read_png(village.path() / "run" / "figures" / "barrier_house_1.png");
+    int lines = 0;  // across most of the picture: a panel's upper and lower edge
+    bool before = false;
+    for (int y = 0; y < chart.height; ++y) {
+        int dark = 0;
+        for (int x = 0; x < chart.width; ++x) dark += figures::distance(chart.at(x, y), colours::black) < 60;
+        const bool line = dark > chart.width / 2;
+        lines += line && !before;
+        before = line;
+    }
+    CHECK(lines == 2);
 }
 
 TEST_CASE("A row of houses mirrored about the flow's axis is met alike, side by side", "[barriers][results]") {

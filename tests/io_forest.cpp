@@ -51,6 +51,20 @@ TEST_CASE("What trees take is said before a run and left by it", "[program][fore
     for (const double depth : left.values) mass += depth > 0.0 ? 25.0 * 300.0 * depth : 0.0;
     CHECK(mass == Approx(bed["deposited"].get<double>()).epsilon(1e-6));  // single precision
     CHECK_THAT(text_of(dir / "report.md"), Contains("| became bed |"));
+    // What was used, node by node: none in the stand without data.
+    const Raster used = GdalReader().read_raster(dir / "rasters" / "forest_pressure.tif", {0, 0, 150, 100}, "", log);
+    REQUIRE(used.geometry.size() > 0);
+    for (Index i = 0; i < used.geometry.nx; ++i) {
+        const double x = used.geometry.x(i), expected = x < 50.0 ? 0.0 : x < 100.0 ? 80.0 : 40.0;
+        CAPTURE(x);
+        CHECK(used.at(i, 0) == expected);
+    }
+    REQUIRE(plane.frana("figures " + dir.string()).code == 0);
+    CHECK(fs::exists(dir / "figures" / "map_forest_pressure.png"));
+    // The same everywhere: no map of it, as of friction.
+    const std::string even = (plane.folder() / "even").string();
+    REQUIRE(plane.frana("run CASE --quiet --threads 1 --until 1 --set forest.detrainment=50 --out " + even).code == 0);
+    CHECK_FALSE(fs::exists(fs::path(even) / "rasters" / "forest_pressure.tif"));
 }
 
 TEST_CASE("A run ends when trees have taken all of it, and says that it has become bed", "[program][forest]") {

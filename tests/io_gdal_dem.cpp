@@ -1,10 +1,15 @@
 // Windows and spacings of an elevation model.
 #include <chrono>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 #include "fresh_folder.h"
 #include "io/gdal_reader.h"
 #include "io_gdal_make.h"
+#include "observe/profiles.h"
+#include "scene/case_file.h"
+#include "terrain/places.h"
 
 #include "catch.h"
 
@@ -221,6 +226,25 @@ TEST_CASE("A small window of a huge raster is read without reading the raster", 
     CHECK(coarse.dem.at(50, 49) == Approx(0.77));
     CHECK(seconds < 10.0);  // 0.1 s here; the whole raster would take minutes, if it fitted
     CHECK(contains(user_error([&] { read(file, {}, {}); }), "smaller window or a larger cell"));
+}
+
+TEST_CASE("The profile of the case with erosion runs along the floor of its gully", "[gdal][cases]") {
+    const std::string folder = FRANA_SOURCE_DIR "/cases/erosion/";
+    const Raster dem = read(folder + "data/dem.tif", {}, {}).dem;
+    std::ifstream file(folder + "case.toml");
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    const Polyline line = CaseFile::parse(text, "case.toml").points("profile.0.line");
+    const GridGeometry& g = dem.geometry;
+    for (const Station& station : stations(line, g.cell)) {
+        const Vec2& at = station.point;
+        if (at.x() > 900.0) break;  // there the fan begins
+        const NodeAt node = nearest_node(g, at);
+        Index lowest = node.j;
+        for (Index j = node.j - 10; j <= node.j + 10; ++j)
+            if (dem.at(node.i, j) < dem.at(node.i, lowest)) lowest = j;
+        CAPTURE(at.x(), at.y());
+        CHECK(std::abs(g.y(lowest) - at.y()) <= 2.0 * g.cell);  // the floor is wider, and pieces are straight
+    }
 }
 
 TEST_CASE("Heights that the file only calls feet are remarked upon, unless it declares metres", "[gdal][remarks]") {

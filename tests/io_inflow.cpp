@@ -7,6 +7,7 @@
 #include "catch.h"
 #include "observe/table.h"
 #include "plane_case.h"
+#include "read_layer.h"
 
 using namespace frana;
 namespace fs = std::filesystem;
@@ -109,10 +110,65 @@ TEST_CASE("A flood leaves its budget, and a section its table, figure and lines 
     CHECK(passed < kVolume);
     CHECK(json["sections"][0]["towards"][0] == 1.0);
     const std::string report = text_of(dir / "report.md");
-    for (const char* text : {"## Sections", "| bridge | 90 degrees from north |", "came in by inflows",
-                             "figures/sections_discharge.png", "inflow torrent: 240 m3"})
+    for (const char* text :
+         {"## Sections", "| bridge | 90 degrees from north |", "came in by inflows", "figures/sections_discharge.png",
+          "inflow torrent: 240 m3", "| farthest front from the middle of inflow torrent |"})
         CHECK_THAT(report, Contains(text));
+    CHECK(json["results"]["front_from"] == "the middle of inflow torrent");
     CHECK(fs::file_size(dir / "figures" / "sections_discharge.png") > 1000);
+}
+
+TEST_CASE("A GIS gets the lines and areas of inflows, with what their tables say", "[program][inflow][gis]") {
+    const Flood plane;
+    write_text(plane.file(), std::string(kFlood) +
+                                 "[[inflow]]\nname = \"landslide\"\narea = [[60, 30], [70, 30], [70, 50], [60, 50]]\n"
+                                 "table = \"q.csv\"\n");
+    const fs::path dir = plane.folder() / "out";
+    const Outcome run =
+        plane.frana("run CASE --quiet --set 'output.formats=[\"geotiff\"]' --until 4 --out " + dir.string());
+    INFO(run.err);
+    REQUIRE(run.code == 0);
+    for (const auto& [name, inflow] : {std::pair("inflow", "torrent"), std::pair("inflow_areas", "landslide")}) {
+        CAPTURE(name);
+        const Layer layer(dir / "results.gpkg", name);
+        REQUIRE(layer.get().GetFeatureCount() == 1);
+        const OGRFeatureUniquePtr feature(layer.get().GetNextFeature());
+        CHECK(std::string(feature->GetFieldAsString("name")) == inflow);
+        // The corners of q.csv, and a triangle's volume by a sum of trapezoids: round-off.
+        CHECK(feature->GetFieldAsDouble("volume_m3") == Approx(kVolume).epsilon(1e-13));
+        CHECK(feature->GetFieldAsDouble("peak_discharge_m3_s") == 60.0);
+        CHECK(feature->GetFieldAsDouble("peak_s") == 2.0);
+        CHECK(feature->GetFieldAsDouble("start_s") == 1.0);
+        CHECK(feature->GetFieldAsDouble("end_s") == 9.0);
+    }
+    const Layer lines(dir / "results.gpkg", "inflow"), areas(dir / "results.gpkg", "inflow_areas");
+    const OGRFeatureUniquePtr line(lines.get().GetNextFeature()), area(areas.get().GetNextFeature());
+    CHECK(line->GetGeometryRef()->toLineString()->getX(0) == 40.0);
+    CHECK(line->GetGeometryRef()->toLineString()->getY(1) == 65.0);
+    CHECK(area->GetGeometryRef()->toPolygon()->get_Area() == Approx(200.0));
+    CHECK(area->GetFieldAsDouble("area_m2") == Approx(200.0));
+}
+
+TEST_CASE("Pictures of a run show its inflows, drawn again too, and not those whose file has gone",
+          "[program][inflow][figures]") {
+    const Flood plane;
+    write_text(plane.folder() / "line.geojson",
+               R"({"type": "Feature", "properties": {}, "geometry": {"type": "LineString", "coordinates":
+               [[40, 35], [40, 65]]}})");
+    const fs::path dir = plane.folder() / "out", map = dir / "figures" / "map_peak_depth.png";
+    REQUIRE(plane
+                .frana("run CASE --quiet --set inflow.0.line=line.geojson --set 'output.formats=[\"geotiff\",\"png\"]' "
+                       "--until 4 --out " +
+                       dir.string())
+                .code == 0);
+    const std::string at_once = text_of(map);
+    REQUIRE(plane.frana("figures " + dir.string() + " --size 1400x1200").err.empty());
+    CHECK(text_of(map) == at_once);
+    fs::remove(plane.folder() / "line.geojson");
+    const Outcome gone = plane.frana("figures " + dir.string() + " --size 1400x1200");
+    CHECK(gone.code == 0);
+    CHECK_THAT(gone.err, Contains("inflow torrent is not on the maps: ") && Contains("line.geojson"));
+    CHECK(text_of(map) != at_once);
 }
 
 TEST_CASE("What of a flood's table has not come in is told, before the run and after it", "[program][inflow]") {
@@ -217,6 +273,9 @@ TEST_CASE("A flood that takes up its bed grows from what came in", "[program][in
     REQUIRE(taken > 0.1 * kVolume);
     CHECK_THAT(text_of(dir / "report.md"),
                Contains(fmt::format("(its mass grew {:.3g} times)", (kVolume + taken) / kVolume)));
+    const std::string caption = record_of(dir)["caption"];  // that of another growth is another
+    for (const char* text : {"erodible.law growth, ", "erodible.growth 0.01 1/m, ", "erodible.depth 0.5 m, "})
+        CHECK_THAT(caption, Contains(text));
 }
 
 TEST_CASE("A growth that the steepest path would make more than a hundredfold is told before the run",

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
+#include "law/erosion/mechanical.h"
 #include "observe/budget.h"
 #include "scene/build_scene.h"
 #include "shallow/depth_averaged.h"
@@ -190,4 +192,19 @@ TEST_CASE("Loose material in a scar only is a remark", "[erosion][scene][remarks
     CHECK(told("scar.geojson", "included_in_dem = true\n") == 1);
     CHECK(told("gully.geojson", "included_in_dem = true\n") == 0);
     CHECK(told("scar.geojson", "") == 0);
+}
+
+TEST_CASE("The key of the mechanical law says how fast its bed sinks, and what values are in use",
+          "[erosion][describe]") {
+    const std::string meaning = find_parameter("erodible.shear_velocity")->meaning;
+    CHECK(has(meaning, "with 1 the bed sinks at metres a second under a metre of flow"));
+    CHECK(has(meaning, "0.03 to 0.1"));
+    // What it says: a metre of flow on a slope of 20 degrees with mu = 0.3, on a bed of the same density that holds less.
+    erosion::State state{};
+    state.density = state.bed_density = 1900.0, state.thickness = 1.0;
+    state.normal_gravity = 9.81 * std::cos(20.0 * constants::kDegree);
+    state.stress = 0.3 * state.density * state.normal_gravity;
+    const double rate = erosion::Mechanical{0.1, 1.0}.rate(state);
+    CHECK(rate > 1.0);
+    CHECK(rate < 10.0);
 }

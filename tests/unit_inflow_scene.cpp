@@ -214,6 +214,8 @@ TEST_CASE("What an area of an inflow cannot be is said in a sentence", "[scene][
          {"[[1100, 2050], [1120, 2050], [1140, 2050]]", "[[1100, 2050], [1120, 2060], [1100, 2050]]"})
         CHECK(says(problem_of(with("area = " + std::string(flat) + "\n" + volume)), "area",
                    "found an outline without area, such as a line; expected the outline of an area"));
+    CHECK(says(problem_of(with("area = [[1100, 2050], [1120, 2070], [1120, 2050], [1100, 2070]]\n" + volume)), "area",
+               "found an outline that crosses itself"));
     CHECK(says(problem_of(with("area = [[1100, 2050], [1102, 2050], [1102, 2052]]\n" + volume)), "area",
                "found an area of 2 m2"));
     CHECK(says(problem_of(with("area = [[900, 2050], [1120, 2050], [1120, 2070]]\n" + volume)), "area",

@@ -90,6 +90,15 @@ TEST_CASE("A flow begins with what lies there at the start, else with what comes
     CHECK(start(inflow + kFirst + "when_hit = true\n").x() == Approx(1150.0));
 }
 
+TEST_CASE("What the front is measured from has a name", "[scene][late][inflow]") {
+    const auto origin = [](const std::string& text) { return front_origin(built(text)); };
+    const std::string inflow =
+        "[[inflow]]\nname = \"torrent\"\nline = [[1150, 2060], [1150, 2080]]\nvolume = 500\nvelocity = 3\n";
+    CHECK(origin(kFirst + inflow) == "the release's centre");
+    CHECK(origin(inflow + kFirst + "at = 5\n") == "the middle of inflow torrent");
+    CHECK(origin(kFirst + "at = 5\n") == "the centre of what is released later");
+}
+
 TEST_CASE("A later release that stands in the elevation model leaves it when it enters", "[scene][late][scar]") {
     const std::string included = "included_in_dem = true\n";
     const Scene bare = built(kFirst + kSecond + "at = 7.5\n"), now = built(kFirst + kSecond + included);

@@ -65,6 +65,11 @@ TEST_CASE("Friction that no ground has is remarked upon, as an angle", "[scene][
     CHECK(remark(of("mu = 3"), slope(0.5), "friction angle of").find("71.6 degrees") != std::string::npos);
     for (const char* fit : {"friction_angle_deg = 2", "friction_angle_deg = 60", "mu = 0.4"})
         CHECK(remarks(of(fit), slope(0.5), "friction angle of").empty());
+    const auto manning = [](const std::string& mu) {
+        return case_of("density = 1500\nbed.law = \"manning\"\nbed.manning_n = 0.05\nbed.mu = " + mu);
+    };
+    CHECK(remarks(manning("0"), slope(0.5), "friction angle of").empty());  // Manning's term alone
+    CHECK(remarks(manning("0.01"), slope(0.5), "friction angle of").size() == 1);
 }
 
 TEST_CASE("A turbulence coefficient that is none of Voellmy's is remarked upon", "[scene][remarks]") {

@@ -80,4 +80,11 @@ std::optional<Vec2> start_of_what_comes_in(const Scene& scene) {
     return scene.particles.count() > 0 ? std::nullopt : flow_start(scene);
 }
 
+std::string front_origin(const Scene& scene) {
+    if (middle_of_lake(scene)) return "the centre of the water at the start";
+    if (scene.particles.count() > 0) return "the release's centre";
+    if (!scene.inflows.empty()) return "the middle of inflow " + scene.inflows.front().name;
+    return scene.late.empty() ? "the terrain's middle" : "the centre of what is released later";
+}
+
 }  // namespace frana

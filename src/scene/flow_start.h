@@ -1,6 +1,7 @@
 #pragma once
 // Where the flow begins: there the path starts that runouts are measured along.
 #include <optional>
+#include <string>
 
 #include "scene/scene.h"
 
@@ -13,5 +14,8 @@ std::optional<Vec2> flow_start(const Scene& scene);
 
 /// The same where nothing lies on the terrain at the start, nothing otherwise: then a run's rasters tell.
 std::optional<Vec2> start_of_what_comes_in(const Scene& scene);
+
+/// Where the front is measured from (Status::front), for people: "the release's centre", "the middle of inflow torrent".
+std::string front_origin(const Scene& scene);
 
 }  // namespace frana

@@ -12,4 +12,8 @@ namespace frana {
 Polyline read_line(const CaseFile& file, const std::string& key, const GisReader& reader, const std::string& crs_wkt,
                    std::vector<std::string>& log);
 
+/// Likewise a key that holds the corners of an area, or names a vector file of polygons.
+Polygons read_outline(const CaseFile& file, const std::string& key, const GisReader& reader, const std::string& crs_wkt,
+                      std::vector<std::string>& log);
+
 }  // namespace frana

@@ -27,6 +27,20 @@ constexpr double kLayer = 0.01, kFewestLayers = 50.0;
 constexpr Index kParts = 16;        ///< of an interval of the table, where speeds follow from the discharge
 constexpr Index kMostParts = 4000;  ///< of all
 
+/// Whether two sides of a ring meet within both. Sides that lie in a line do not.
+bool crosses_itself(const std::vector<Vec2>& ring) {
+    const auto turn = [](const Vec2& a, const Vec2& b, const Vec2& c) {
+        return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+    };
+    const std::size_t count = ring.size();
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t j = i + 1; j < count; ++j) {
+            const Vec2 &a = ring[i], &b = ring[(i + 1) % count], &c = ring[j], &d = ring[(j + 1) % count];
+            if (turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0) return true;
+        }
+    return false;
+}
+
 class InflowReader {
 public:
     InflowReader(const CaseFile& file, Index i, const GisReader& reader, Scene& scene)
@@ -87,7 +101,9 @@ private:
 
     std::optional<Inflow> read_area(Problems& problems) {
         Hydrograph table;
-        bool good = attempt(problems, "area", [&] { place_patches(polygons()); });
+        bool good = attempt(problems, "area", [&] {
+            place_patches(read_outline(case_, prefix_ + "area", reader_, bed_.crs_wkt, scene_.log));
+        });
         good &= attempt(problems, given("table") ? "table" : "volume", [&] {
             table = hydrograph();
             require_room(table);
@@ -101,15 +117,6 @@ private:
         inflow_.speed.assign(table.time.size(), 0.0);
         inflow_.layer = water_ ? 0.0 : layer_of(table.volume() / inflow_.area);
         return inflow_;
-    }
-
-    Polygons polygons() {
-        const std::string key = prefix_ + "area";
-        if (case_.is_text(key)) return reader_.read_polygons(case_.path(key), bed_.crs_wkt, scene_.log);
-        Polygons drawn;
-        drawn.parts.push_back({{case_.points(key)}});
-        drawn.source = key;
-        return drawn;
     }
 
     /// As a release of that outline has its points; each gets what the outline covers of its patch.
@@ -145,6 +152,10 @@ private:
         }
         constexpr double round_off = 1e-9;
         if (std::abs(area) > round_off * reach) return;
+        if (std::any_of(rings.begin(), rings.end(), crosses_itself))
+            throw UserError(
+                "found an outline that crosses itself, whose parts cancel out; expected one that goes round the area "
+                "once; put its corners in their order");
         throw UserError(
             "found an outline without area, such as a line; expected the outline of an area; draw it around what "
             "flows, or give it as inflow.line");
@@ -444,6 +455,15 @@ private:
 };
 
 }  // namespace
+
+Polygons read_outline(const CaseFile& file, const std::string& key, const GisReader& reader, const std::string& crs_wkt,
+                      std::vector<std::string>& log) {
+    if (file.is_text(key)) return reader.read_polygons(file.path(key), crs_wkt, log);
+    Polygons drawn;
+    drawn.parts.push_back({{file.points(key)}});
+    drawn.source = key;
+    return drawn;
+}
 
 void read_inflows(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems) {
     for (Index i = 0; i < file.count("inflow"); ++i) {

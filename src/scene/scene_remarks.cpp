@@ -149,6 +149,7 @@ void remark_on_material(const CaseFile& file, Scene& scene) {
     const auto angle = [&](const std::string& key, bool tangent) {
         if (!file.given(key) || file.is_text(key)) return;
         const double value = file.number(key);
+        if (value == 0.0 && file.word("material.bed.law") == bed::Manning::name) return;  // his term alone
         remark_on(scene.log, Remark::friction, file.place(key),
                   {tangent ? std::atan(value) * constants::kRadian : value});
     };

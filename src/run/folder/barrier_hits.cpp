@@ -57,6 +57,7 @@ std::vector<char> around(const Polygons& outline, const GridGeometry& part) {
 /// What a hit reads.
 struct Fields {
     const ProductRaster *depth, *pressure, *arrival;
+    const Raster* bed;
     static double at(const ProductRaster* field, Index i, Index j) {
         return field == nullptr ? BarrierHit::unknown : field->raster.at(i, j);
     }
@@ -68,6 +69,7 @@ void add_pixel(BarrierHit& hit, const Fields& fields, Index i, Index j, const Ve
     if (!(depth > 0.0)) return;  // not reached
     raise(hit.depth, depth), raise(hit.pressure, pressure);
     if (std::isfinite(time) && !(hit.time <= time)) hit.time = time;
+    if (std::isfinite(time) && fields.bed != nullptr) raise(hit.surface, fields.bed->at(i, j) + depth);
     const std::array<bool, 4> faces = sides_of(away);
     for (std::size_t side = 0; side < kSides.size(); ++side)
         if (faces[side]) raise(hit.side_depth[side], depth), raise(hit.side_pressure[side], pressure);
@@ -77,7 +79,7 @@ std::string cell(double value) { return std::isfinite(value) ? fmt::format(",{:.
 
 }  // namespace
 
-BarrierHit hit_on(const Polygons& outline, const std::vector<ProductRaster>& rasters) {
+BarrierHit hit_on(const Polygons& outline, const std::vector<ProductRaster>& rasters, const Raster* bed) {
     BarrierHit hit;
     if (outline.parts.empty() || rasters.empty()) return hit;
     hit.area = 0.0;
@@ -88,7 +90,7 @@ BarrierHit hit_on(const Polygons& outline, const std::vector<ProductRaster>& ras
     const GridGeometry part = box.of(all);
     const std::vector<char> marks = around(outline, part);
     const Fields fields{find_product(rasters, "peak_depth"), find_product(rasters, "peak_dynamic_pressure"),
-                        find_product(rasters, "arrival_time")};
+                        find_product(rasters, "arrival_time"), bed != nullptr && bed->geometry == all ? bed : nullptr};
     for (Index j = 0; j < part.ny; ++j)
         for (Index i = 0; i < part.nx; ++i)
             if (marks[static_cast<std::size_t>(j * part.nx + i)])
@@ -96,17 +98,31 @@ BarrierHit hit_on(const Polygons& outline, const std::vector<ProductRaster>& ras
     return hit;
 }
 
-std::vector<BarrierHit> hits_on(const std::vector<Barrier>& barriers, const std::vector<ProductRaster>& rasters) {
+std::vector<BarrierHit> hits_on(const std::vector<Barrier>& barriers, const std::vector<ProductRaster>& rasters,
+                                const Raster* bed) {
     std::vector<BarrierHit> hits;
     hits.reserve(barriers.size());
-    for (const Barrier& barrier : barriers) hits.push_back(hit_on(barrier.outline, rasters));
+    for (const Barrier& barrier : barriers) hits.push_back(hit_on(barrier.outline, rasters, bed));
     return hits;
 }
 
 void note_contacts(const std::vector<BarrierHit>& hits, std::vector<BarrierSummary>& summaries) {
     expect(hits.size() == summaries.size(), "every barrier has a hit");
-    for (std::size_t n = 0; n < hits.size(); ++n)
-        if (!(summaries[n].blur > 0.0) && std::isfinite(hits[n].time)) summaries[n].first_contact = hits[n].time;
+    for (std::size_t n = 0; n < hits.size(); ++n) {
+        BarrierSummary& summary = summaries[n];
+        const BarrierHit& hit = hits[n];
+        if (summary.blur > 0.0 || !std::isfinite(hit.area)) continue;
+        if (std::isfinite(hit.time)) {
+            summary.first_contact = hit.time;
+            if (std::isnan(summary.run_up)) summary.run_up = hit.surface;
+        } else if (!(summary.overtopped > 0.0)) {
+            summary.run_up = BarrierHit::unknown;
+        }
+    }
+}
+
+bool was_hit(const BarrierSummary& barrier) {
+    return barrier.first_contact >= 0.0 || barrier.peak_force > 0.0 || std::isfinite(barrier.run_up);
 }
 
 void write_barrier_table(const std::filesystem::path& csv, const std::vector<BarrierSummary>& summaries,

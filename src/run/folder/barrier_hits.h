@@ -22,19 +22,26 @@ struct BarrierHit {
     double pressure = unknown;  ///< largest density times speed squared [Pa]
     double depth = unknown;     ///< largest [m]
     double time = unknown;      ///< first deeper than the footprint depth [s]
+    double surface = unknown;   ///< highest ground with the largest depth on it, of pixels that were ever so deep [m]
     std::array<double, 4> side_pressure{unknown, unknown, unknown, unknown};  ///< [Pa]
     std::array<double, 4> side_depth{unknown, unknown, unknown, unknown};     ///< [m]
 };
 
 /// A side has pixels whose middle lies outside. It is in that direction (within 45 degrees) from the nearest place of
 /// the outline. On the very diagonal they belong to both sides. The cost is that of the box around the outline.
-BarrierHit hit_on(const Polygons& outline, const std::vector<ProductRaster>& rasters);
+/// `bed`, on the rasters' nodes, tells the surface; nullptr: that is not known.
+BarrierHit hit_on(const Polygons& outline, const std::vector<ProductRaster>& rasters, const Raster* bed = nullptr);
 
 /// Of all barriers, in their order; of those without an outline (lines, meshes) nothing is known.
-std::vector<BarrierHit> hits_on(const std::vector<Barrier>& barriers, const std::vector<ProductRaster>& rasters);
+std::vector<BarrierHit> hits_on(const std::vector<Barrier>& barriers, const std::vector<ProductRaster>& rasters,
+                                const Raster* bed = nullptr);
 
-/// The time of contact of those that no force is known of is that of their hit.
+/// Of those that no force is known of, the time of contact is that of their hit. Where the flow was never so deep, there
+/// is no run-up. Where it was, and no column came near, the run-up is the highest surface of the hit.
 void note_contacts(const std::vector<BarrierHit>& hits, std::vector<BarrierSummary>& summaries);
+
+/// Whether it has a contact or a force, or where a wall's contact is not known, a run-up.
+bool was_hit(const BarrierSummary& barrier);
 
 /// barriers.csv: a row for each barrier; what is not known is left empty. UserError when it cannot be written.
 void write_barrier_table(const std::filesystem::path& csv, const std::vector<BarrierSummary>& summaries,

@@ -36,6 +36,8 @@ constexpr ShapeRule kShapes[] = {
     {"Input", "gauges", "Gauges", colours::black, true},
     {"Input", "barriers", "Barriers", {213, 94, 0}, true},
     {"Input", "sections", "Sections", {204, 121, 167}, true},
+    {"Input", "inflow", "Inflows", {0, 158, 115}, true},
+    {"Input", "inflow_areas", "Areas of inflows", {0, 158, 115}, true},
     {"Input", "profiles", "Profiles", {0, 114, 178}, true},
     {"Input", "release", "Release", colours::black, true, true},
     {"Survey", "survey", "Surveyed footprint", colours::survey, true},

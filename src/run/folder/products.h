@@ -63,7 +63,11 @@ std::optional<Raster> ever_covered(const std::vector<ProductRaster>& rasters);
 /// The parameters of a spatially varying friction, as the nodes of its bed have them: mu, xi, ...
 std::vector<ProductRaster> friction_rasters(const Friction& friction, const Raster& bed);
 
-/// The names that such rasters can have, "mu", "rheology_viscosity", "water_manning_n", and their keys in a case.
+/// "forest_pressure" of a forest that differs spatially: Forest::pressure, and its ground. Nothing of any other.
+std::optional<ProductRaster> forest_raster(const Raster& pressure, const Raster& bed);
+
+/// The names that such rasters can have, "mu", "rheology_viscosity", "water_manning_n", "forest_pressure", and their keys
+/// in a case.
 std::vector<std::pair<std::string, const Parameter*>> friction_keys();
 /// Whether a raster of that name is one of those.
 bool is_friction(const std::string& name);

@@ -115,7 +115,7 @@ std::string results(const RunRecord& r) {
     text += row("largest dynamic pressure, density times speed squared",
                 fmt::format("{:.4g} kPa", 1e-3 * r.peak_dynamic_pressure));
     text += row("largest bed pressure", fmt::format("{:.4g} kPa", 1e-3 * r.peak_pressure));
-    text += row("farthest front from the release's centre", fmt::format("{:.5g} m", s.extremes.max_front));
+    text += row("farthest front from " + r.front_origin, fmt::format("{:.5g} m", s.extremes.max_front));
     text += row(fmt::format("area ever deeper than {:.3g} m", r.footprint_depth),
                 fmt::format("{:.5g} m2", r.footprint_area));
     if (std::isfinite(r.flow_width))

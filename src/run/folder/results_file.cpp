@@ -137,6 +137,7 @@ std::vector<ShapeLayer> result_layers(const Scene& scene, const std::vector<Prod
     layers.push_back(std::move(gauges));
     layers.push_back(std::move(profiles));
     layers.push_back(section_layer(scene, record));
+    for (ShapeLayer& layer : inflow_layers(scene, record.inflows)) layers.push_back(std::move(layer));
     if (scene.survey)
         for (const Polygon& part : scene.survey->parts) survey.shapes.push_back({part, {}});
     layers.push_back(std::move(survey));

@@ -18,6 +18,7 @@ namespace frana {
 ///   squared) of the pixels
 ///   that they lie on, and the earliest arrival_s there;
 /// - sections: volume_m3 that passed, peak_discharge_m3_s and peak_s when that was;
+/// - inflow, inflow_areas: inflow_layers() (inflow_results.h);
 /// - survey: the surveyed footprint.
 /// What was never reached has no peaks. Trouble with an outline of a barrier is a warning.
 std::vector<ShapeLayer> result_layers(const Scene& scene, const std::vector<ProductRaster>& rasters, RunRecord& record);

@@ -111,6 +111,11 @@ bool has_values(const Table& table, const std::string& name) {
     return std::any_of(values.begin(), values.end(), [](double value) { return value != 0.0; });
 }
 
+bool has_finite(const Table& table, const std::string& name) {
+    const Column& values = table.column(name);
+    return std::any_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+}
+
 /// What the flow got from the bed: all that the other parts have more than the residual (observe/budget.h).
 Column energy_of_bed(const Table& history) {
     Column sum(history.column("t").size(), 0.0);
@@ -163,7 +168,7 @@ ChartFigure motion_chart(const FigureSource& source, const Table& history) {
         errors{"relative error [1]", {}, true, {}, 1.0};
     speed.curves = {curve("fastest, along the bed", t, history.column("max_speed")),
                     curve("mean", t, history.column("mean_speed"))};
-    front.curves = {curve("from the release's centre", t, history.column("front"))};
+    front.curves = {curve("from " + source.front_origin, t, history.column("front"))};
     errors.curves = {curve("mass", t, sizes(history.column("mass_error"))),
                      curve("mass, particles to grid", t, sizes(history.column("p2g_mass_error"))),
                      curve("momentum, particles to grid", t, sizes(history.column("p2g_momentum_error")))};
@@ -224,12 +229,13 @@ ChartFigure barrier_chart(const FigureSource& source, const std::string& name, c
         up{"run-up [m]", {}, false, {}, 0.7}, over{"over it [m3]", {}, false, {}, 0.7};
     up.curves = {curve("highest so far", t, table.column("run_up"))};
     over.curves = {curve("volume that was over it", t, table.column("overtopped"))};
-    figure.panels = {up, over};
+    if (has_finite(table, "run_up")) figure.panels.push_back(up);
+    if (has_values(table, "overtopped")) figure.panels.push_back(over);
     if (!table.has("fx")) return figure;  // columns alone: no forces
     mean.curves = {curve("horizontal, mean", t, table.column("mean_force"))};
     parts.curves = {curve("east", t, table.column("fx")), curve("north", t, table.column("fy")),
                     curve("up", t, table.column("fz"))};
-    figure.panels = {mean, parts, up, over};
+    figure.panels.insert(figure.panels.begin(), {mean, parts});
     return figure;
 }
 
@@ -295,7 +301,9 @@ void add_barriers(const FigureSource& source, Gallery& gallery) {
     std::sort(tables.begin(), tables.end());
     for (const fs::path& file : tables) {
         const std::string name = file.stem().string();
-        if (says_nothing(read_table(file))) continue;  // never hit: a picture of axes alone
+        const auto& not_hit = source.never_hit;
+        if (std::find(not_hit.begin(), not_hit.end(), name) != not_hit.end()) continue;
+        if (says_nothing(read_table(file))) continue;  // a picture of axes alone
         gallery.add({fmt::format("figures/barrier_{}.png", name), fmt::format("barrier {}", name)},
                     [&source, name, file](const fs::path& png, std::string& why_not) {
                         const Table table = read_table(file);

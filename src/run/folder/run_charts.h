@@ -17,7 +17,8 @@ void add_gauges(const FigureSource& source, Gallery& gallery);
 /// figures/sections_discharge.png: discharge through all sections over time, and the volume that passed; nothing without.
 void add_sections(const FigureSource& source, Gallery& gallery);
 
-/// figures/barrier_<name>.png: force, run-up and what went over each barrier with a table in barriers/.
+/// figures/barrier_<name>.png: force, run-up and what went over each barrier that was hit and has a table in
+/// barriers/.
 void add_barriers(const FigureSource& source, Gallery& gallery);
 
 /// figures/compare_bed_change.png: changes of the ground along the path, from compare_bed_change.csv; nothing without it.

@@ -1,6 +1,6 @@
 #include "run/folder/run_figures.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -35,6 +35,21 @@ std::string crs_name(const std::string& wkt) {
     return from == std::string::npos || to == std::string::npos ? "" : wkt.substr(from + 1, to - from - 1);
 }
 
+/// Profiles, sections and inflows, which share a pen and its entry in the legend.
+void add_lines(const FigureSource& source, MapFigure& map) {
+    std::vector<std::string> kinds;
+    const auto add = [&](const char* kind, const std::vector<NamedLine>& lines) {
+        for (const NamedLine& line : lines)
+            if (!line.line.empty()) map.profiles.push_back(line);
+        if (!lines.empty()) kinds.emplace_back(kind);
+    };
+    std::vector<NamedLine> profiles, sections;
+    for (const Profile& profile : source.profiles) profiles.push_back({profile.name, profile.line});
+    for (const Section& section : source.sections) sections.push_back({section.name, section.line});
+    add("profile", profiles), add("section", sections), add("inflow", inflow_plans(source.inflows));
+    map.profiles_are = fmt::format("{}", fmt::join(kinds, ", "));
+}
+
 /// `extent`: the depth that says where the flow is, for a field that is no depth.
 MapFigure map_of(const FigureSource& source, const ProductRaster& product, const std::string& what,
                  const ProductRaster* extent) {
@@ -42,7 +57,8 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
     MapFigure map;
     map.bed = source.bed;
     map.field = product.raster.values;
-    const bool pascal = product.unit == "Pa";  // files are in SI units, pictures in those of the field
+    // Files are in SI units, pictures in those of the field.
+    const bool pascal = product.unit == "Pa" && product.name != "forest_pressure";
     if (pascal)
         for (double& value : map.field) value *= 1e-3;
     map.shown_above = source.footprint_depth;
@@ -58,10 +74,7 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
                                   pascal ? "kPa" : product.unit);  // the title has the moment
     map.survey = source.survey;
     map.barriers = barrier_plans(source.barriers);
-    for (const Profile& profile : source.profiles) map.profiles.push_back({profile.name, profile.line});
-    for (const Section& section : source.sections)
-        if (!section.line.empty()) map.profiles.push_back({section.name, section.line});
-    if (!source.sections.empty()) map.profiles_are = source.profiles.empty() ? "section" : "profile, section";
+    add_lines(source, map);
     for (const Gauge& gauge : source.gauges) map.gauges.push_back({gauge.name, gauge.point});
     map.footer = source.footer;
     for (const std::string& more : {crs_name(source.bed.crs_wkt), source.date})

@@ -29,6 +29,11 @@ struct FigureSource {
     std::vector<Profile> profiles;
     std::vector<Gauge> gauges;
     std::vector<Section> sections;
+    std::vector<InflowPlace> inflows;
+    /// That the front is measured from.
+    std::string front_origin = "the release's centre";
+    /// Names of barriers.
+    std::vector<std::string> never_hit;
     bool in_3d = false;                    ///< the case has a stage of 3D points
     std::vector<BarrierTop> barrier_tops;  ///< in the case's order
     std::vector<Barrier> barriers;         ///< with what they stand on

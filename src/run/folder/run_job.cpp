@@ -156,10 +156,10 @@ void compare_with_survey(const Scene& scene, const Raster& bed, const fs::path& 
 }
 
 /// When the flow came to barriers that no force is known of, and barriers.csv. Trouble is a warning here as well.
-void leave_barrier_table(const Scene& scene, const fs::path& run_dir, const std::vector<ProductRaster>& rasters,
-                         RunRecord& record) {
+void leave_barrier_table(const Scene& scene, const Raster& bed, const fs::path& run_dir,
+                         const std::vector<ProductRaster>& rasters, RunRecord& record) {
     if (scene.barriers.empty()) return;
-    record.barrier_hits = hits_on(scene.barriers, rasters);
+    record.barrier_hits = hits_on(scene.barriers, rasters, &bed);
     note_contacts(record.barrier_hits, record.barriers);
     try {
         write_barrier_table(run_dir / "barriers.csv", record.barriers, record.barrier_hits);
@@ -202,11 +202,27 @@ FigureSource figure_source(const Scene& scene, const Raster& bed, const fs::path
     source.profiles = scene.profiles;
     source.gauges = scene.gauges;
     source.sections = scene.sections;
+    source.inflows = record.inflows;
+    source.front_origin = record.front_origin;
+    for (const BarrierSummary& barrier : record.barriers)
+        if (!was_hit(barrier)) source.never_hit.push_back(barrier.name);
     source.in_3d = scene.solid.has_value();
     source.barrier_tops = tops_of(scene);
     source.barriers = scene.barriers;
     source.density = scene.density;
     return source;
+}
+
+/// Forest::pressure on that ground. Nothing without a forest, or where its files have gone.
+Raster trees_on(const Scene& scene, const Raster& ground) {
+    if (!scene.forest) return {};
+    if (scene.forest->pressure.geometry == ground.geometry) return scene.forest->pressure;
+    if (!scene.wider || !scene.wider->fields) return {};
+    try {
+        return scene.wider->fields(ground).trees;
+    } catch (const UserError&) {
+        return {};  // the run has what it read before
+    }
 }
 
 /// The terrain that rasters and frames show: the scene's, or the part of it that the flow has reached.
@@ -216,13 +232,16 @@ Raster shown_bed(const Scene& scene, const Simulation& simulation, const std::ve
     return part_of(*ground, box_of(rasters.front().raster.geometry, ground->geometry).value());
 }
 
-/// As the run used it, where rasters show the terrain.
+/// Friction and forest as the run used them, where rasters show the terrain.
 void add_friction(const Scene& scene, const Simulation& simulation, std::vector<ProductRaster>& rasters) {
     const Friction* const used = simulation.friction() != nullptr ? simulation.friction() : scene.friction.get();
-    if (used == nullptr) return;
     const Raster& ground = simulation.ground() != nullptr ? *simulation.ground() : scene.bed;
+    std::vector<ProductRaster> all;
+    if (used != nullptr) all = friction_rasters(*used, ground);
+    if (auto forest = forest_raster(trees_on(scene, ground), ground)) all.push_back(std::move(*forest));
+    if (all.empty()) return;
     const GridGeometry shown = shown_bed(scene, simulation, rasters).geometry;
-    for (ProductRaster& product : friction_rasters(*used, ground)) {
+    for (ProductRaster& product : all) {
         if (!(shown == ground.geometry))
             product.raster = part_of(product.raster, box_of(shown, ground.geometry).value());
         rasters.push_back(std::move(product));
@@ -373,7 +392,7 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
             write_outline(run_dir, *covered, scene.output.footprint_depth);
             remark_on_unnamed_crs(*covered, scene.output.geotiff, record);
         }
-        leave_barrier_table(scene, run_dir, rasters, record);
+        leave_barrier_table(scene, bed, run_dir, rasters, record);
         leave_gis_files(scene, run_dir, rasters, record);
     });
     timed(record.summary, "survey", [&] { compare_with_survey(scene, bed, run_dir, rasters, record); });

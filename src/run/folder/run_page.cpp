@@ -168,6 +168,7 @@ WebPage page_of(const FigureSource& source, const FlowFrames& frames, const Plai
     page.survey = source.survey;
     for (const Profile& profile : source.profiles) page.lines.push_back({profile.name, profile.line});
     for (const Section& section : source.sections) page.lines.push_back({section.name, section.line});
+    for (const NamedLine& plan : inflow_plans(source.inflows)) page.lines.push_back({plan.name, plan.line});
     for (const Gauge& gauge : source.gauges) page.gauges.push_back({gauge.name, gauge.point});
     page.barriers = barriers_of(source);
     page.curves = curves_of(source, record, warnings);

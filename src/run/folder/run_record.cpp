@@ -41,7 +41,7 @@ std::string caption_of(const Scene& scene, const std::vector<GivenKey>& given) {
     std::string text;
     for (const GivenKey& key : given) {
         const bool material = key.key.rfind("material.", 0) == 0;
-        if (!material && key.key.rfind("water.", 0) != 0) continue;
+        if (!material && key.key.rfind("water.", 0) != 0 && key.key.rfind("erodible.", 0) != 0) continue;
         std::string value = key.value;
         value.erase(std::remove(value.begin(), value.end(), '"'), value.end());
         if (value.size() > 2 && value.compare(value.size() - 2, 2, ".0") == 0) value.resize(value.size() - 2);
@@ -136,6 +136,7 @@ Json results_json(const RunRecord& record) {
             {"max_speed", most.max_speed},
             {"max_speed_time", most.max_speed_time},
             {"max_front", most.max_front},
+            {"front_from", record.front_origin},
             {"footprint_area", record.footprint_area},
             {"footprint_depth", record.footprint_depth},
             {"flow_width", std::isfinite(record.flow_width) ? Json(record.flow_width) : Json(nullptr)},
@@ -175,8 +176,10 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     if (file.given("time.end")) record.whole_end = file.number("time.end");
     record.footprint_depth = scene.output.footprint_depth;
     record.start = start_of_what_comes_in(scene);
+    record.front_origin = front_origin(scene);
     record.page = asks_for_page(file);
     record.warnings = scene.log;
+    record.inflows = inflow_places(file, scene.bed.crs_wkt, record.warnings);
     return record;
 }
 

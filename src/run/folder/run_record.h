@@ -12,6 +12,7 @@
 #include "run/folder/barrier_hits.h"
 #include "run/folder/barrier_results.h"
 #include "run/folder/checkpoint.h"
+#include "run/folder/inflow_results.h"
 #include "run/folder/release_results.h"
 #include "run/run_loop.h"
 #include "scene/scene.h"
@@ -35,7 +36,7 @@ struct GivenKey {
 struct RunRecord {
     std::string name, title;
     std::string case_file;
-    std::string caption;  ///< material, terrain model and cell in a line, for figures
+    std::string caption;  ///< material, water, loose bed, terrain model and cell in a line, for figures
     std::vector<GivenKey> given;
     std::string command_line;  ///< overrides of the case: "--set a=b --until 5"; empty when none
     GridGeometry grid;
@@ -62,6 +63,9 @@ struct RunRecord {
     SurveyFiles survey_files;
     std::vector<BarrierSource> barrier_sources;
     std::vector<ReleaseSource> release_sources;
+    std::vector<InflowPlace> inflows;
+    /// That the front is measured from.
+    std::string front_origin = "the release's centre";
     RunSummary summary;
     std::vector<DrawnFigure> figures;
     std::vector<InsituTally> insitu;
