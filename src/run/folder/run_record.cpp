@@ -40,8 +40,10 @@ std::vector<GivenKey> given_keys(const CaseFile& file) {
 std::string caption_of(const Scene& scene, const std::vector<GivenKey>& given) {
     std::string text;
     for (const GivenKey& key : given) {
-        const bool material = key.key.rfind("material.", 0) == 0;
-        if (!material && key.key.rfind("water.", 0) != 0 && key.key.rfind("erodible.", 0) != 0) continue;
+        const std::string table = key.key.substr(0, key.key.find('.'));
+        const bool material = table == "material";
+        if (!material && table != "water" && table != "erodible" && table != "deposition" && table != "forest")
+            continue;
         std::string value = key.value;
         value.erase(std::remove(value.begin(), value.end(), '"'), value.end());
         if (value.size() > 2 && value.compare(value.size() - 2, 2, ".0") == 0) value.resize(value.size() - 2);
