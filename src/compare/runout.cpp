@@ -22,10 +22,10 @@ constexpr Neighbour neighbours[] = {{1, 0, 1.0},      {-1, 0, 1.0},      {0, 1, 
 /// Water on a raster: where it runs from each node.
 class Drainage {
 public:
-    explicit Drainage(const Raster& bed) : bed_(bed), way_out_(bed.values.size(), unseen) { flood(); }
+    explicit Drainage(const Raster& bed) : bed_(bed) {}
 
     /// Nodes from `start` to the edge of the terrain.
-    std::vector<Index> from(Index start) const {
+    std::vector<Index> from(Index start) {
         std::vector<Index> nodes{start};
         for (Index node = start;;) {
             const Index below = steepest(node);
@@ -33,6 +33,8 @@ public:
                 nodes.push_back(node = below);
                 continue;
             }
+            if (at_edge(node)) return nodes;
+            if (way_out_.empty()) flood();  // takes long on a large terrain, where the way may have no hollow
             const double hollow = height(node);
             do {  // every way out of a hollow ends below it or at the edge
                 node = way_out_[static_cast<std::size_t>(node)];
@@ -74,6 +76,7 @@ private:
 
     /// From the edge inwards, always on from the node with the lowest way to the edge.
     void flood() {
+        way_out_.assign(bed_.values.size(), unseen);
         using Level = std::pair<double, Index>;
         std::priority_queue<Level, std::vector<Level>, std::greater<>> front;
         for (Index node = 0; node < bed_.geometry.size(); ++node)
