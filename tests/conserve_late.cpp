@@ -68,13 +68,23 @@ void require_same_columns(const DepthAveraged& a, const DepthAveraged& b) {
     REQUIRE((c.r1x == d.r1x));
 }
 
+ErodibleBed loose_ground(const Scene& scene) {
+    ErodibleBed bed;
+    bed.density = scene.density;
+    bed.depth = Raster::filled(scene.bed.geometry, 0.5);
+    bed.law = erosion::Growth{1e-3};
+    return bed;
+}
+
 }  // namespace
 
 TEST_CASE("A release that enters later is a run that starts then, with the same bits", "[late]") {
     for (const bool slab : {false, true})
-        for (const bool mud : {false, true}) {
+        for (const char* what : {"", "mud", "loose"}) {
             constexpr double kAt = 3.7;  // no sum of ordinary steps
             Scene now = shelf(), later = shelf();
+            const bool mud = std::string(what) == "mud";
+            if (std::string(what) == "loose") now.erodible = later.erodible = loose_ground(now);
             if (mud) now.rheology = later.rheology = rheology::Bingham{50.0, 100.0};
             if (slab) fill(now, resting), fill(later, resting);
             fill(now, sliding), delay(later, "slide", kAt, sliding);
@@ -83,7 +93,7 @@ TEST_CASE("A release that enters later is a run that starts then, with the same 
             REQUIRE_FALSE(late.may_rest());
             const Status first = late.status();
             run_to(late, kAt);
-            INFO("slab " << slab << ", mud " << mud);
+            INFO("slab " << slab << ", " << what);
             REQUIRE(late.status().time == kAt);
             REQUIRE_FALSE(late.more_comes());
             REQUIRE(entry(late.extras(), 0).entered == kAt);

@@ -247,6 +247,32 @@ TEST_CASE("The surface of flow and bed does not move when mass changes sides", "
     CHECK(moved <= 4e-15);  // round-off of 2 m
 }
 
+// A run that stops earlier keeps the state two steps before, to go on from (run/run_loop.cpp).
+TEST_CASE("What ends a run early has changed nothing two steps before", "[erosion][resume]") {
+    Scene scene = slide();
+    scene.erodible = loose(scene, erosion::Growth{1e-3}, [](double, double) { return 0.5; });
+    DepthAveraged whole(scene);
+    std::vector<Status> steps;
+    std::vector<Array> x, mass;
+    const auto note = [](const DepthAveraged& run, std::vector<Array>& xs, std::vector<Array>& masses) {
+        xs.push_back(run.flow().columns.x), masses.push_back(run.flow().columns.mass);
+    };
+    for (int n = 0; n < 30; ++n) {
+        whole.advance(1e3);
+        steps.push_back(whole.status());
+        note(whole, x, mass);
+    }
+    REQUIRE(whole.status().bed.eroded > 0.0);
+    for (std::size_t n = 0; n < steps.size(); ++n) {
+        CAPTURE(n);
+        DepthAveraged cut(scene);
+        for (std::size_t step = 0; step <= n; ++step) cut.advance(steps[n].time + 1.02 * steps[n].dt);
+        REQUIRE(cut.status().time == steps[n].time);
+        CHECK((cut.flow().columns.x == x[n]));
+        CHECK((cut.flow().columns.mass == mass[n]));
+    }
+}
+
 TEST_CASE("A flow down the middle of a valley takes as much on both sides", "[erosion]") {
     Scene scene = slide([](Scene& s) {
         s.particles = {};

@@ -141,11 +141,9 @@ void Erosion::give(Flow& flow) {
         for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) given.add(wanted_[p]);
     }
     deposited_.add(given.value());
-    flow.windows.start(flow.columns.count(), flow.active.count());
     flow.columns.with_real([&](auto real) {
         for_each_eroding_in_turn(flow, [&](Index n) { spread<decltype(real)>(flow, n, wanted_, demand_); });
     });
-    flow.windows.forget();  // points that gave all they had go
     collect_reach(flow);
     fold(flow, demand_);
     for_each_in_parallel(nodes_, [&](Index tile) { raise_tile(flow, tile); });

@@ -183,7 +183,6 @@ void DepthAveraged::advance(double until) {
     if (erodes) timed_("erosion", [&] { erode(dt, until - status_.time); });
     if (settles) timed_("erosion", [&] { detrain(dt); });
     if (apart) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_velocity_dt); });
-    flow_.windows.forget();
     arrive(points);
     if (late_) enter_late();
     if (!aside_ && added_.count() > 0) enter_added();

@@ -110,6 +110,7 @@ void DepthAveraged::take_rows() {
     const Feed::Columns& rows = feed_->take(status_.time);
     Columns& c = flow_.columns;
     const Index before = c.count();
+    if (erosion_ && before == 0) erosion_->start_anew(true);
     const GridGeometry& g = flow_.grid.geometry();
     PointSums came;
     double kinetic = 0.0;
@@ -178,6 +179,7 @@ double DepthAveraged::place_late(const LateRelease& release, PointSums& came) {
 /// as the nodes count it, with what a flow on a falling bed loses: the release lifts it as far again.
 void DepthAveraged::take_late(const std::vector<const LateRelease*>& releases) {
     if (flow_.columns.count() > 0) catch_up();
+    if (erosion_) erosion_->start_anew(flow_.columns.count() == 0);
     status_.dt = 0.0, since_split_ = 0.0;
     wake_all(flow_);
     const double potential = status_.potential, signal = signal_;

@@ -247,7 +247,7 @@ Real Erosion::can_give(Index k) const {
 
 /// An exchange stands for three steps or so, of which the second has its velocities. Where it would take more than a share of
 /// the flow that gains, one comes in each step.
-constexpr double kMostSteps = 2.5, kMostAhead = 1.5;
+constexpr double kMostSteps = 2.5;
 constexpr double kMostShare = 0.01;
 
 bool Erosion::is_due(double dt, bool adapts, bool last) const {
@@ -259,18 +259,18 @@ Erosion::Stretch Erosion::next_stretch(double dt, double left) {
     const double owed = waited_ - ahead_, centred = owed - dt;
     // After three steps halfway to what three steps go on with, or stretches would be long and short for ever.
     const double wanted = waited_ > kMostSteps * dt ? 0.5 * (centred + dt) : centred;
-    waited_ = 0.0, ahead_ = std::max({0.0, -owed, std::min({wanted, kMostAhead * dt, left})});
+    waited_ = 0.0, ahead_ = std::max({0.0, -owed, std::min({wanted, dt, left})});
     return {owed + ahead_, owed - ahead_};
 }
 
 ExchangeSums Erosion::exchange(Flow& flow, double dt, double left) {
     ExchangeSums all;
+    constexpr double kRoundOff = 1e-12;
     const Stretch stretch = next_stretch(dt, left);
-    if (!takes_ || !(stretch.whole > 0.0)) return all;
+    if (!takes_ || !(stretch.whole > kRoundOff * dt)) return all;
     share_rate_ = 0.0;
     if (!choose(flow)) return all;
     make_room(flow);
-    flow.windows.start(flow.columns.count(), flow.active.count());  // for the deposit as well
     find_demand(flow, stretch);
     scarce_ = find_shares(flow);
     if (scarce_) share_out(flow);
@@ -469,19 +469,14 @@ Double4 Erosion::speeds_left(Double4 gain, Double4 braked) const {
 
 namespace {
 
-/// The window of four points of the n-th tile, not next to the grid's sides; nullptr where sub-points are too far away.
-/// `room`: for one that is not kept.
+/// The window of four points, not next to the grid's sides, in `room`; nullptr where sub-points are too far away.
 template <class Real>
-const WindowOfFour* window_of(Flow& flow, Index p, Index n, int lanes, WindowOfFour& room) {
-    if (const WindowOfFour* found = flow.windows.find(p, n)) return found;
+const WindowOfFour* window_of(const Flow& flow, Index p, int lanes, WindowOfFour& room) {
     const Columns& c = flow.columns;
     const Carried<Real>& held = c.carried<Real>();
     const Domains r{load(&held.r1x[p], lanes), load(&held.r1y[p], lanes), load(&held.r2x[p], lanes),
                     load(&held.r2y[p], lanes)};
-    WindowOfFour& window = flow.windows.keeps() ? flow.windows.at(p, n) : room;
-    if (!find_window(flow, load(&c.x[p], lanes), load(&c.y[p], lanes), r, window)) return nullptr;
-    flow.windows.know(p, n, true);
-    return &window;
+    return find_window(flow, load(&c.x[p], lanes), load(&c.y[p], lanes), r, room) ? &room : nullptr;
 }
 
 }  // namespace
@@ -500,7 +495,7 @@ void Erosion::spread(Flow& flow, Index n, const Array& masses, LazyArray<double>
         if (!any(m > none)) return;
         const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes);
         marks.mark(floor_positive(x + (kTile - 0.5)), floor_positive(y + (kTile - 0.5)), lanes);
-        const WindowOfFour* const window = at_side ? nullptr : window_of<Real>(flow, p, n, lanes, room);
+        const WindowOfFour* const window = at_side ? nullptr : window_of<Real>(flow, p, lanes, room);
         if (window) return spread_window(stride, into.data(), lanes, m, *window);
         for (Index q = p; q < p + lanes; ++q)
             spread_column<Quadratic>(flow, into.data(), {c.x[q], c.y[q], masses[q]}, edges_of(held, q));
@@ -591,7 +586,7 @@ bool all_usual(const Flow& flow, const LazyArray<double>& share, double usual, D
 
 /// Calls take(p, number) for the points of a tile that have a demand. The number is what of_window finds on the shares
 /// of the window's nodes. Where sub-points lie too far away for a window, it is that of of_point(p, edges). Among nodes
-/// of the usual share it is that share. take says whether it moved the point.
+/// of the usual share it is that share.
 template <class Real, class OfWindow, class OfPoint, class Take>
 void for_each_wanting(Flow& flow, Index n, const Array& wanted, const LazyArray<double>& share, double usual,
                       OfWindow&& of_window, OfPoint&& of_point, Take&& take) {
@@ -605,16 +600,14 @@ void for_each_wanting(Flow& flow, Index n, const Array& wanted, const LazyArray<
         if (!any(load(&wanted[p], lanes) > none)) return;
         const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes);
         const bool alike = !at_side && all_usual(flow, share, usual, x, y, lanes);
-        const WindowOfFour* const window = alike || at_side ? nullptr : window_of<Real>(flow, p, n, lanes, room);
+        const WindowOfFour* const window = alike || at_side ? nullptr : window_of<Real>(flow, p, lanes, room);
         const auto number = [&](Index q, int lane) {
             if (alike) return usual;
             if (!window) return of_point(q, edges_of(held, q));
             return of_window(*window, lane, share.data() + window->j[lane] * stride + window->i[lane]);
         };
-        bool moved = false;
         for (int lane = 0; lane < lanes; ++lane)
-            if (wanted[p + lane] > 0.0) moved = take(p + lane, number(p + lane, lane)) || moved;
-        if (moved) flow.windows.know(p, n, false);
+            if (wanted[p + lane] > 0.0) take(p + lane, number(p + lane, lane));
     });
 }
 
@@ -640,10 +633,8 @@ void Erosion::take_shares(Flow& flow, Index n) {
             });
         return least;
     };
-    for_each_wanting<Real>(flow, n, wanted_, share_, 1.0, of_window, of_point, [&](Index p, double least) {
-        missed_[p] = wanted_[p] - least * wanted_[p];
-        return false;
-    });
+    for_each_wanting<Real>(flow, n, wanted_, share_, 1.0, of_window, of_point,
+                           [&](Index p, double least) { missed_[p] = wanted_[p] - least * wanted_[p]; });
 }
 
 template <class Real>
@@ -668,7 +659,6 @@ void Erosion::take_left_over(Flow& flow, Index n) {
         const double wanted = wanted_[p], gets = (wanted - missed_[p]) + mean * wanted;
         wanted_[p] = gets;
         if (gets < wanted) return_part(flow, p, gets / wanted);
-        return gets < wanted;
     });
 }
 

@@ -38,11 +38,16 @@ public:
 
     /// A step of `dt` [s] begins.
     void wait(double dt) { waited_ += dt; }
+    /// Material came that has taken nothing yet. `alone`: there was none.
+    void start_anew(bool alone) {
+        share_rate_ = std::numeric_limits<double>::infinity();
+        if (alone) waited_ = ahead_ = 0.0;
+    }
     /// Whether this step ends with an exchange. `adapts`: its points are sorted before they are deposited. `last`: the
     /// state after it is wanted.
     bool is_due(double dt, bool adapts, bool last) const;
     /// Points gain, the bed loses; after the gather and the sort, before the deposit. In one step of `dt`, for all that
-    /// waited, and some that follow. `left`: until the state is wanted [s].
+    /// waited, and some that follow. `left`: until the run ends or something else enters [s].
     ExchangeSums exchange(Flow& flow, double dt, double left);
     /// In the step that `now` has ended, points that have been at rest for long enough become bed. Returns what the
     /// flow got by it, below zero, or nothing where none did. After the gather, before anything comes in or points are
@@ -207,7 +212,7 @@ private:
     Array missed_;                       ///< of it, for their poorest nodes' sake; when something is scarce [kg]
     Array speed_;                        ///< along the bed [m/s]
     Array from_x_, from_y_;              ///< where points with a demand were before they were set back [cells]
-    Array braked_;                       ///< share of the speed that friction takes in the step [1]
+    Array braked_;                       ///< share of the speed that friction takes in the time of the exchange [1]
     CompensatedSum eroded_, deposited_, energy_;
     double initial_mass_ = 0.0, mass_ = 0.0, deepest_ = 0.0;
     double waited_ = 0.0;  ///< since the last exchange [s]

@@ -11,7 +11,6 @@
 #include "shallow/node_rheologies.h"
 #include "shallow/nodes.h"
 #include "shallow/rest.h"
-#include "shallow/sub_point_windows.h"
 
 namespace frana {
 
@@ -88,7 +87,6 @@ struct Flow {
     LazyArray<TileSums> deposit_sums, depth_sums;  ///< per tile, of node_sums and depth_pass
     LazyArray<Pair> speed_sums;  ///< per tile, of update_peaks: mass [kg] and its product with speed [kg m/s]
     Rest rest;
-    SubPointWindows windows;  ///< known between an exchange with the bed and the deposit after it
     /// Nodes that the passes go over.
     NodeGroups active_nodes(Index tile) const { return rest.active[tile] ? in_reach[tile] : 0; }
     auto active_nodes() const {

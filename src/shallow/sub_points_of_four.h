@@ -6,6 +6,12 @@
 
 namespace frana {
 
+/// Where the sub-points of four points spread: weights of the four by four nodes that hold all of a point's.
+struct WindowOfFour {
+    Int4 i, j;              ///< first nodes, counted from the storage's first
+    Double4 of_lane[4][4];  ///< of a row, of a point: the weights of four nodes, 256 in all
+};
+
 /// Edges of the domains of four points [cells].
 struct Domains {
     Double4 r1x, r1y, r2x, r2y;

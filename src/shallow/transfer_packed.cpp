@@ -36,7 +36,7 @@ public:
             Sums sums;
             StencilMarks marks = flow.marks_of(tile);
             for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
-                deposit_batch(flow, n, first, end, cap, at_side, marks, sums);
+                deposit_batch(flow, first, end, cap, at_side, marks, sums);
             });
             flow.reach[tile] = marks.reach(kReachBefore, kReachAfter);
             deposited_[tile] = sums.points();
@@ -72,7 +72,7 @@ public:
             StencilMarks marks = flow.marks_of(tile);
             for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
                 gather_batch(flow, first, end, dt, moved);
-                if (moved.rare.bad < 0) deposit_batch(flow, n, first, end, cap, at_side, marks, deposited);
+                if (moved.rare.bad < 0) deposit_batch(flow, first, end, cap, at_side, marks, deposited);
             });
             flow.reach[tile] = marks.reach(kReachBefore, kReachAfter);
             deposited_[tile] = deposited.points();
@@ -182,7 +182,7 @@ private:
     }
 
     /// Stresses first: a chain of divisions and roots that points wait for side by side.
-    [[gnu::noinline]] void deposit_batch(Flow& flow, Index n, Index first, Index end, double cap, bool at_side,
+    [[gnu::noinline]] void deposit_batch(Flow& flow, Index first, Index end, double cap, bool at_side,
                                          StencilMarks& marks, Sums& sums) {
         PlaneOf<Double4> internal_force[kBatch / 4];
         if constexpr (kStress) {
@@ -198,15 +198,7 @@ private:
         for_each_four(first, end, [&](Index p, int lanes) {
             deposit_four(flow, p, lanes, internal_force[(p - first) / 4], marks, sums);
         });
-        const bool some_known = flow.windows.keeps();
-        for_each_four(first, end, [&](Index p, int lanes) {
-            const WindowOfFour* const window = some_known ? flow.windows.find(p, n) : nullptr;
-            if (window)
-                spread_window(flow.grid.stride(), flow.nodes.column_mass.data(), lanes,
-                              load(&flow.columns.mass[p], lanes), *window);
-            else
-                deposit_columns(flow, p, lanes, at_side);
-        });
+        for_each_four(first, end, [&](Index p, int lanes) { deposit_columns(flow, p, lanes, at_side); });
     }
 
     void deposit_four(Flow& flow, Index p, int lanes, const PlaneOf<Double4>& internal_force, StencilMarks& marks,

@@ -186,11 +186,12 @@ std::optional<Violation> Watch::energy(const Snapshot& state) {
     const double lifted =
         facts_.displaces * (facts_.one_cell_drop + (1.0 - facts_.bears) * (highest_ - lowest_) + beyond_walls);
     // Points take from nodes around them, and leave material there. The bed is bent by what is gone or has been left.
-    const double drop = facts_.one_cell_drop + now.bed.deepest + deepest_;
-    const double exchanged = facts_.bed_energy ? facts_.gravity * ((now.bed.eroded - first.bed.eroded) * drop +
-                                                                   (now.bed.deposited - first.bed.deposited) * drop +
-                                                                   mass_ * now.bed.deepest)
-                                               : 0.0;
+    const double moved = now.bed.eroded + now.bed.deposited - first.bed.eroded - first.bed.deposited;
+    const double bent = now.bed.deepest + (now.bed.deposited > 0.0 ? deepest_ : 0.0);
+    const double exchanged =
+        facts_.bed_energy
+            ? facts_.gravity * (moved * (facts_.one_cell_drop + now.bed.deepest + deepest_) + most_mass_ * bent)
+            : 0.0;
     const double share = kEnergyShare * (at_hand_ + turned_over_);
     return judged("energy", growth,
                   facts_.hidden_energy + share + uphill + recorded + bends + lifted + exchanged + round_off, state,
