@@ -99,6 +99,13 @@ TEST_CASE("Every drawn case is one that the program takes", "[stress]") {
     CHECK_NOTHROW(scene_of(draw(20261130, 741)));  // a release that comes later lay beside a hole
 }
 
+// The fit divided nothing by nothing once all that it could change had changed.
+TEST_CASE("Masses fitted to a lake of few points at their limits are numbers", "[stress][lake]") {
+    const DepthAveraged run(scene_of(draw(20261134, 3209)));
+    CHECK(std::isfinite(run.status().mass));
+    CHECK(run.status().mass > 0.0);
+}
+
 TEST_CASE("A sound run breaks no invariant", "[stress]") {
     const Verdict verdict = examine(mound());
     REQUIRE_FALSE(verdict.broken);

@@ -94,6 +94,20 @@ TEST_CASE("Flow, bed and what left have the mass of the start, and no node lies 
             }
 }
 
+TEST_CASE("A law beyond all measure takes what is there, and mass stays exact", "[erosion]") {
+    for (const ErosionLaw& law : {ErosionLaw(erosion::Growth{100.0}), ErosionLaw(erosion::Steady{1000.0})}) {
+        Scene scene = slide();
+        scene.erodible = loose(scene, law, [](double, double) { return 0.5; });
+        DepthAveraged simulation(scene);
+        const Status first = simulation.frame().status;
+        run(simulation, 12.0);
+        const Budget left_over = budget(first, simulation.frame().status);
+        CHECK(simulation.status().bed.eroded > 0.1 * first.mass);
+        CHECK(std::abs(left_over.mass_error) <= 1e-13);
+        CHECK(std::abs(left_over.bed_error) <= 1e-13);
+    }
+}
+
 TEST_CASE("A bed without anything loose changes no bit of a run", "[erosion]") {
     DepthAveraged rock(slide([](Scene& s) { s.erodible.reset(), s.scheme.cfl = 0.5; }));
     DepthAveraged bare(

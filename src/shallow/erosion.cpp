@@ -245,6 +245,8 @@ Real Erosion::can_give(Index k) const {
     return select(read<Real>(&raised_[k]) > none, none, all);
 }
 
+/// What a point demands at once, of its mass. No bed gives so much, and round-off of more would count.
+constexpr double kMostGain = 1e3;
 /// An exchange stands for three steps or so, of which the second has its velocities. Where it would take more than a share of
 /// the flow that gains, one comes in each step.
 constexpr double kMostSteps = 2.5;
@@ -436,7 +438,7 @@ void Erosion::demand_of_tile(Flow& flow, Index n, const Stretch& stretch, const 
                 if constexpr (Law::kSeesStress && kFresh)
                     if (any(state.lies > none)) state.bears = strengths(below, ground.below, at_middle * u, state);
             }
-            gain = select(moves, wanted_shares(law, state, per_thickness, middle), none);
+            gain = select(moves, min(wanted_shares(law, state, per_thickness, middle), all(kMostGain)), none);
         }
         store(&wanted_[p], gain * mass, lanes);
         store(&speed_[p], ground.speed, lanes);

@@ -98,12 +98,17 @@ public:
         const Numbers root = weight.cwiseSqrt();
         // Without a preconditioner: with one x would be the shortest by another measure.
         Eigen::LeastSquaresConjugateGradient<Eigen::SparseMatrix<double>, Eigen::IdentityPreconditioner> solver;
-        solver.setTolerance(1e-15);
         solver.setMaxIterations(1000);
-        solver.compute(deposit_ * root.asDiagonal());
-        const Numbers x = solver.solve(rhs);
-        iterations += solver.iterations();
-        return root.cwiseProduct(x);
+        const Eigen::SparseMatrix<double> matrix = deposit_ * root.asDiagonal();
+        solver.compute(matrix);
+        // Beyond round-off the method may divide nothing by nothing.
+        for (const double tolerance : {1e-15, 1e-12, 1e-9}) {
+            solver.setTolerance(tolerance);
+            const Numbers x = solver.solve(rhs);
+            iterations += solver.iterations();
+            if (x.allFinite()) return root.cwiseProduct(x);
+        }
+        return Numbers::Zero(root.size());
     }
 
 private:
