@@ -22,11 +22,22 @@ std::string replay_options(const Draft& draft) {
     return text;
 }
 
+namespace {
+
+/// "" where it depends on a law's key.
+const char* unit_of(const std::string& raster) {
+    if (raster == "vx.tif" || raster == "vy.tif") return "m/s";
+    for (const char* length : {"dem.tif", "depth.tif", "loose.tif", "late.tif"})
+        if (raster == length) return "m";
+    return "";
+}
+
+}  // namespace
+
 void save_draft(const std::filesystem::path& folder, const Draft& draft, const Violation& broken) {
     std::filesystem::create_directories(folder);
     for (const auto& [name, raster] : draft.rasters)
-        write_geotiff(folder / name, raster, name == "dem.tif" || name == "depth.tif" ? "m" : "m/s",
-                      name.substr(0, name.find('.')));
+        write_geotiff(folder / name, raster, unit_of(name), name.substr(0, name.find('.')));
     Draft as_run = draft;  // what `frana run` is to reach: a little beyond the step that fails
     double end = broken.time > 0.0 ? broken.time : 1.0;
     for (const auto& [key, value] :
