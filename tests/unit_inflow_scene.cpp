@@ -153,6 +153,9 @@ TEST_CASE("What an inflow cannot be is said in a sentence", "[scene][inflow]") {
     CHECK(says(problem_of(with(kLine)), "table", "not given, and no volume either"));
     CHECK(says(problem_of(with(kLine + "table = \"q.csv\"\npeak = \"rickenmann\"\n")), "peak",
                "found together with table"));
+    for (const char* of_volume : {"at", "rise"})
+        CHECK(says(problem_of(with(kLine + "table = \"q.csv\"\n" + of_volume + " = 4\n")), of_volume,
+                   "found together with table; expected it with volume only"));
     CHECK(says(problem_of(with(kLine + volume + "areal = 3\n")), "areal", "found an unknown key"));
     CHECK(says(problem_of(with(kLine + volume + "velocity = 0\n")), "velocity", "found 0"));
     CHECK(says(problem_of(with("line = [[1100, 2050], [1100, 2053]]\n" + volume)), "line", "found a line of 3 m"));
