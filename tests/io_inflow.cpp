@@ -10,6 +10,7 @@
 #include "observe/table.h"
 #include "plane_case.h"
 #include "read_layer.h"
+#include "run/folder/section_ends.h"
 
 using namespace frana;
 namespace fs = std::filesystem;
@@ -118,6 +119,35 @@ TEST_CASE("A flood leaves its budget, and a section its table, figure and lines 
         CHECK_THAT(report, Contains(text));
     CHECK(json["results"]["front_from"] == "the middle of inflow torrent");
     CHECK(fs::file_size(dir / "figures" / "sections_discharge.png") > 1000);
+}
+
+TEST_CASE("A section that the flow goes round has a remark at that end", "[program][inflow][sections]") {
+    const Flood plane;
+    write_text(plane.file(), std::string(kFlood) + "[[section]]\nname = \"short\"\nline = [[55, 5], [55, 50]]\n");
+    const fs::path dir = plane.folder() / "out";
+    REQUIRE(plane.frana("run CASE --quiet --set output.formats=[] --out " + dir.string()).code == 0);
+    std::vector<std::string> ends;
+    const Json json = record_of(dir);
+    for (const std::string remark : json["remarks"])
+        if (remark.find("passed beyond the end of section") != std::string::npos) ends.push_back(remark);
+    REQUIRE(ends.size() == 1);
+    CHECK_THAT(ends[0], Contains("the flow passed beyond the end of section short at (55, 50), ") &&
+                            Catch::EndsWith(" m deep: draw the line longer"));
+    CHECK_THAT(text_of(dir / "report.md"), Contains("- " + ends[0] + "\n"));
+}
+
+TEST_CASE("A section may end at the flow's margin, at the terrain's edge or outside of it", "[sections]") {
+    Raster peak = Raster::filled({10, 10, 0.0, 0.0, 2.0}, 0.0);
+    for (Index j = 4; j < 10; ++j) peak.at(5, j) = 0.5;  // x = 10, from y = 8 to the northern edge
+    const auto remarks = [&](double from, double to) {
+        return remarks_on_ends({{"a", {{10.0, from}, {10.0, to}}, true}}, peak, 0.1).size();
+    };
+    CHECK(remarks(2.0, 18.0) == 0);
+    CHECK(remarks(8.0, 25.0) == 0);
+    CHECK(remarks(2.0, 12.0) == 1);
+    CHECK(remarks(12.0, 14.0) == 2);
+    peak.at(5, 7) = 0.1;
+    CHECK(remarks(2.0, 12.0) == 0);
 }
 
 TEST_CASE("A GIS gets the lines and areas of inflows, with what their tables say", "[program][inflow][gis]") {
