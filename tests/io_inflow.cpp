@@ -223,6 +223,21 @@ TEST_CASE("What of a flood's table has not come in is told, before the run and a
     CHECK(inflow["volume"].get<double>() == Approx(kVolume - left).epsilon(1e-12));
     CHECK_THAT(text_of(dir / "report.md"), Contains("; of their 240 m3 ") && Contains(" m3 had not come in |"));
     CHECK_THAT(text_of(dir / "report.md"), Contains("Of momentum and energy, what came in is taken off what left."));
+    // Until t after the peak the triangle has brought all but what is right of t.
+    const double until = 9.0 - std::sqrt(2.0 * left * 7.0 / 60.0);
+    CHECK_THAT(text_of(dir / "report.md"),
+               Contains(fmt::format("by the tables, until their row of t = {:.4g} s, {:.6g} "
+                                    "m3, ",
+                                    until, inflow["expected"].get<double>())));
+}
+
+TEST_CASE("A run that ends before anything came in says so", "[program][inflow]") {
+    const Flood plane;
+    const fs::path dir = plane.folder() / "out";
+    CHECK(plane.frana("run CASE --quiet --until 0.5 --set output.formats=[] --out " + dir.string()).code == 0);
+    const std::string report = text_of(dir / "report.md");
+    CHECK_THAT(report, Contains("--resume goes on: no material has come in yet") && !Contains("nothing moves"));
+    CHECK_THAT(report, Contains("| came in by inflows | 0 m3; no row of the tables' 240 m3 has come in yet |"));
 }
 
 TEST_CASE("A flood that is stopped in the middle of its table goes on with the same bits", "[program][inflow]") {

@@ -64,15 +64,21 @@ std::string bed_text(const RunRecord& r) {
     return text + fmt::format("; balance {:.1e}", budget(r.summary.first, r.summary.last).bed_error);
 }
 
-/// "9100 m3; by the tables 9100 m3, difference 1e-12; of their 12000 m3 2900 m3 had not come in".
-std::string inflow_text(const InflowBudget& inflow) {
+/// "9100 m3; by the tables, until their row of t = 95.2 s, 9100 m3, difference 1e-12; of their 12000 m3 2900 m3 had not
+/// come in". A table comes in as rows of columns, each when it is complete. Several tables have rows of several times.
+std::string inflow_text(const RunRecord& r) {
     constexpr double kNone = 1e-9;  // of the tables: round-off of their sums
+    const InflowBudget& inflow = *r.extras.inflow;
     const double left = inflow.tables - inflow.expected;
-    return fmt::format("{:.6g} m3; by the tables {:.6g} m3, difference {:.1e}", inflow.volume, inflow.expected,
-                       inflow.volume - inflow.expected) +
-           (left > kNone * inflow.tables
-                ? fmt::format("; of their {:.6g} m3 {:.6g} m3 had not come in", inflow.tables, left)
-                : "");
+    const std::string so_far =
+        fmt::format("{:.6g} m3, difference {:.1e}", inflow.expected, inflow.volume - inflow.expected);
+    if (!(left > kNone * inflow.tables)) return fmt::format("{:.6g} m3; by the tables {}", inflow.volume, so_far);
+    if (!(inflow.expected > 0.0))
+        return fmt::format("{:.6g} m3; no row of the tables' {:.6g} m3 has come in yet", inflow.volume, inflow.tables);
+    const std::string until = r.inflow_until ? fmt::format("their row of t = {:.4g} s", *r.inflow_until)
+                                             : "the last row of each that came in";
+    return fmt::format("{:.6g} m3; by the tables, until {}, {}; of their {:.6g} m3 {:.6g} m3 had not come in",
+                       inflow.volume, until, so_far, inflow.tables, left);
 }
 
 /// "300 m3 at t = 12.4 s, when the flow reached it".
@@ -104,7 +110,7 @@ std::string results(const RunRecord& r) {
     if (!r.extras.late.empty())
         text += row("release volume, with what entered later",
                     fmt::format("{:.6g} m3", r.release_volume + released_later(r)));
-    if (r.extras.inflow) text += row("came in by inflows", inflow_text(*r.extras.inflow));
+    if (r.extras.inflow) text += row("came in by inflows", inflow_text(r));
     for (const LateEntry& late : r.extras.late) text += row("entered later: " + late.name, late_text(late));
     text += row("simulated time",
                 fmt::format("{:.6g} s of {:.6g} s, {} steps, {} frames", s.last.time, r.end, s.steps, s.frames));

@@ -95,6 +95,8 @@ void note_energy_made(RunRecord& record) {
 
 void note_simulation(RunRecord& record, const Scene& scene, const Simulation& simulation) {
     record.extras = simulation.extras();
+    if (record.extras.inflow && scene.inflows.size() == 1)
+        record.inflow_until = time_of(scene.inflows.front(), record.extras.inflow->expected);
     for (const std::string& remark : simulation.remarks()) record.warnings.push_back(remark);
     note_rising_forces(record, scene);
     note_energy_made(record);

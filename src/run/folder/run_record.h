@@ -64,6 +64,7 @@ struct RunRecord {
     std::vector<BarrierSource> barrier_sources;
     std::vector<ReleaseSource> release_sources;
     std::vector<InflowPlace> inflows;
+    std::optional<double> inflow_until;  ///< the last row of the only inflow's table that has come in [s]
     /// That the front is measured from.
     std::string front_origin = "the release's centre";
     RunSummary summary;
