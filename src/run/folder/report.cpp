@@ -55,9 +55,9 @@ std::string bed_text(const RunRecord& r) {
     std::string text = fmt::format(
         "the flow took {:.6g} m3 of it, by the density of the flow (its mass grew {:.3g} times), {:.3g} m deep at "
         "most; "
-        "left behind {:.6g} m3",
+        "{} {:.6g} m3",
         r.taken_of_bed / r.density, given > 0.0 ? (given + r.taken_of_bed) / given : 1.0, bed.deepest,
-        bed.deposited / r.density);
+        r.by_trees_alone ? "held back by trees:" : "left behind", bed.deposited / r.density);
     if (bed.deposited > 0.0)
         text += fmt::format(", of which it took {:.6g} m3 again and {:.6g} m3 lie there at the end", again / r.density,
                             lies_behind(r) / r.density);
@@ -149,9 +149,10 @@ std::string results(const RunRecord& r) {
     if (s.last.bed.initial > 0.0)
         text += row("erodible bed", bed_text(r));
     else if (s.last.bed.deposited > 0.0)
-        text += row("became bed", fmt::format("{:.6g} m3, of which {:.6g} m3 lie there at the end; balance {:.1e}",
-                                              s.last.bed.deposited / r.density, s.last.bed.mass / r.density,
-                                              budget(s.first, s.last).bed_error));
+        text += row(r.by_trees_alone ? "held back by trees" : "became bed",
+                    fmt::format("{:.6g} m3, of which {:.6g} m3 lie there at the end; balance {:.1e}",
+                                s.last.bed.deposited / r.density, s.last.bed.mass / r.density,
+                                budget(s.first, s.last).bed_error));
     text += row("left the domain", left_text(r));
     return text + "\n";
 }

@@ -180,6 +180,7 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     record.start = start_of_what_comes_in(scene);
     record.front_origin = front_origin(scene);
     record.page = asks_for_page(file);
+    record.by_trees_alone = scene.forest && !scene.deposition;
     record.warnings = scene.log;
     record.inflows = inflow_places(file, scene.bed.crs_wkt, record.warnings);
     return record;
