@@ -234,9 +234,11 @@ TEST_CASE("What of a flood's table has not come in is told, before the run and a
 TEST_CASE("A run that ends before anything came in says so", "[program][inflow]") {
     const Flood plane;
     const fs::path dir = plane.folder() / "out";
-    CHECK(plane.frana("run CASE --quiet --until 0.5 --set output.formats=[] --out " + dir.string()).code == 0);
+    CHECK(plane.frana("run CASE --quiet --until 0.5 --set 'output.formats=[\"png\"]' --out " + dir.string()).code == 0);
     const std::string report = text_of(dir / "report.md");
     CHECK_THAT(report, Contains("--resume goes on: no material has come in yet") && !Contains("nothing moves"));
+    CHECK_THAT(report, Contains("| 0 m3 | 0 m3 | not reached | 0 m3 |"));
+    CHECK_FALSE(fs::exists(dir / "figures" / "sections_discharge.png"));
     CHECK_THAT(report, Contains("| came in by inflows | 0 m3; no row of the tables' 240 m3 has come in yet |"));
 }
 

@@ -30,6 +30,12 @@ std::string row(const std::string& name, const std::string& value) {
     return fmt::format("| {} | {} |\n", name, cell(value));
 }
 
+/// "103520 m2": as plain digits up to 1e7.
+std::string area_text(double area) {
+    constexpr double kWhole = 1e4, kMost = 1e7;  // {:.5g} is as plain below, and shorter beyond [m2]
+    return area >= kWhole && area < kMost ? fmt::format("{:.0f} m2", area) : fmt::format("{:.5g} m2", area);
+}
+
 std::string heading(const RunRecord& r) {
     const RunSummary& s = r.summary;
     std::string text = fmt::format("# {}\n\n", r.title);
@@ -122,13 +128,12 @@ std::string results(const RunRecord& r) {
                 fmt::format("{:.4g} kPa", 1e-3 * r.peak_dynamic_pressure));
     text += row("largest bed pressure", fmt::format("{:.4g} kPa", 1e-3 * r.peak_pressure));
     text += row("farthest front from " + r.front_origin, fmt::format("{:.5g} m", s.extremes.max_front));
-    text += row(fmt::format("area ever deeper than {:.3g} m", r.footprint_depth),
-                fmt::format("{:.5g} m2", r.footprint_area));
+    text += row(fmt::format("area ever deeper than {:.3g} m", r.footprint_depth), area_text(r.footprint_area));
     if (std::isfinite(r.flow_width))
         text += row("width of the flow, median over its length",
                     fmt::format("{:.4g} m, {:.3g} cells", r.flow_width, r.flow_width / r.grid.cell));
     text += depths_at_end(r);
-    text += row("mean speed at the end", fmt::format("{:.3g} m/s", s.last.mean_speed));
+    text += row("mean speed of what still flows, at the end", fmt::format("{:.3g} m/s", s.last.mean_speed));
     if (r.extras.breakage) {
         const Breakage& b = *r.extras.breakage;
         std::string shares;
@@ -394,9 +399,11 @@ std::string sections(const RunRecord& r) {
         "|---|---|---|---|---|---|\n";
     for (const SectionSummary& s : r.sections) {
         const double azimuth = std::fmod(std::atan2(s.towards.x(), s.towards.y()) * constants::kRadian + 360.0, 360.0);
-        text += fmt::format(
-            "| {} | {:.0f} degrees from north | {:.6g} m3 | {:.6g} m3 | {:.4g} m3/s at {:.4g} s | {:.4g} m3 |\n",
-            s.name, azimuth, s.volume, s.sediment, s.peak, s.peak_time, s.integral);
+        const bool reached = s.peak > 0.0 || s.integral != 0.0 || std::abs(s.volume) > 0.0;
+        text += fmt::format("| {} | {:.0f} degrees from north | {:.6g} m3 | {:.6g} m3 | {} | {:.4g} m3 |\n", s.name,
+                            azimuth, s.volume, s.sediment,
+                            reached ? fmt::format("{:.4g} m3/s at {:.4g} s", s.peak, s.peak_time) : "not reached",
+                            s.integral);
     }
     return text +
            "\nThe volume is that of the columns that passed, each with the mass that it had there, and is exact for "
@@ -470,9 +477,9 @@ std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_d
                         left_text(r), budget(s.first, s.last).mass_error);
     text += fmt::format("  deepest    {:.4g} m, fastest {:.4g} m/s, front at {:.5g} m\n", s.extremes.max_depth,
                         s.extremes.max_speed, s.extremes.max_front);
-    text +=
-        fmt::format("  covered    {:.5g} m2 deeper than {:.3g} m; deepest at the end {:.4g} m{}\n", r.footprint_area,
-                    r.footprint_depth, r.final_depth, s.last.bed.deposited > 0.0 ? ", with what became bed" : "");
+    text += fmt::format("  covered    {} deeper than {:.3g} m; deepest at the end {:.4g} m{}\n",
+                        area_text(r.footprint_area), r.footprint_depth, r.final_depth,
+                        s.last.bed.deposited > 0.0 ? ", with what became bed" : "");
     if (r.comparison) text += fmt::format("  survey     {}\n", comparison_line(*r.comparison));
     text += fmt::format("  report     {}\n", place("report.md"));
     text += fmt::format("  pictures   {}\n", r.figures.empty() ? "-" : (run_dir / "figures").string());
