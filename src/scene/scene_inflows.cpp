@@ -369,10 +369,9 @@ private:
         const bool own = given("table");
         const char* const what = own ? "a table that" : "that the triangle of volume";
         if (table.time.front() >= scene_.end)
-            throw UserError(
-                fmt::format("found {} begins at {:.6g} s; expected a time before time.end = {:.6g} s; {}", what,
-                            table.time.front(), scene_.end,
-                            own ? "shift the table, or run longer" : "give a smaller at, or a later time.end"));
+            throw UserError(fmt::format(
+                "found {} begins at {:.6g} s; expected a time before time.end = {:.6g} s; {}", what, table.time.front(),
+                scene_.end, own ? "shift the table, or run longer" : "give a smaller at, or a later time.end"));
         if (table.time.back() > scene_.end)
             scene_.log.push_back(
                 fmt::format("inflow {}: found {} goes on to {:.6g} s; expected time.end = {:.6g} s or less; what comes "
