@@ -50,7 +50,8 @@ TEST_CASE("What trees take is said before a run and left by it", "[program][fore
     double mass = 0.0;
     for (const double depth : left.values) mass += depth > 0.0 ? 25.0 * 300.0 * depth : 0.0;
     CHECK(mass == Approx(bed["deposited"].get<double>()).epsilon(1e-6));  // single precision
-    CHECK_THAT(text_of(dir / "report.md"), Contains("| became bed |"));
+    CHECK_THAT(text_of(dir / "report.md"),
+               Contains("| held back by trees |") && Contains("| GeoTIFF of the detrainment K of the forest |"));
     // What was used, node by node: none in the stand without data.
     const Raster used = GdalReader().read_raster(dir / "rasters" / "forest_pressure.tif", {0, 0, 150, 100}, "", log);
     REQUIRE(used.geometry.size() > 0);
@@ -61,6 +62,7 @@ TEST_CASE("What trees take is said before a run and left by it", "[program][fore
     }
     REQUIRE(plane.frana("figures " + dir.string()).code == 0);
     CHECK(fs::exists(dir / "figures" / "map_forest_pressure.png"));
+    CHECK_THAT(text_of(dir / "report.md"), !Contains("forest_pressure under the flow"));
     // The same everywhere: no map of it, as of friction.
     const std::string even = (plane.folder() / "even").string();
     REQUIRE(plane.frana("run CASE --quiet --threads 1 --until 1 --set forest.detrainment=50 --out " + even).code == 0);

@@ -10,6 +10,7 @@
 #include "observe/table.h"
 #include "plane_case.h"
 #include "read_layer.h"
+#include "run/folder/section_ends.h"
 
 using namespace frana;
 namespace fs = std::filesystem;
@@ -120,6 +121,35 @@ TEST_CASE("A flood leaves its budget, and a section its table, figure and lines 
     CHECK(fs::file_size(dir / "figures" / "sections_discharge.png") > 1000);
 }
 
+TEST_CASE("A section that the flow goes round has a remark at that end", "[program][inflow][sections]") {
+    const Flood plane;
+    write_text(plane.file(), std::string(kFlood) + "[[section]]\nname = \"short\"\nline = [[55, 5], [55, 50]]\n");
+    const fs::path dir = plane.folder() / "out";
+    REQUIRE(plane.frana("run CASE --quiet --set output.formats=[] --out " + dir.string()).code == 0);
+    std::vector<std::string> ends;
+    const Json json = record_of(dir);
+    for (const std::string remark : json["remarks"])
+        if (remark.find("passed beyond the end of section") != std::string::npos) ends.push_back(remark);
+    REQUIRE(ends.size() == 1);
+    CHECK_THAT(ends[0], Contains("the flow passed beyond the end of section short at (55, 50), ") &&
+                            Catch::EndsWith(" m deep: draw the line longer"));
+    CHECK_THAT(text_of(dir / "report.md"), Contains("- " + ends[0] + "\n"));
+}
+
+TEST_CASE("A section may end at the flow's margin, at the terrain's edge or outside of it", "[sections]") {
+    Raster peak = Raster::filled({10, 10, 0.0, 0.0, 2.0}, 0.0);
+    for (Index j = 4; j < 10; ++j) peak.at(5, j) = 0.5;  // x = 10, from y = 8 to the northern edge
+    const auto remarks = [&](double from, double to) {
+        return remarks_on_ends({{"a", {{10.0, from}, {10.0, to}}, true}}, peak, 0.1).size();
+    };
+    CHECK(remarks(2.0, 18.0) == 0);
+    CHECK(remarks(8.0, 25.0) == 0);
+    CHECK(remarks(2.0, 12.0) == 1);
+    CHECK(remarks(12.0, 14.0) == 2);
+    peak.at(5, 7) = 0.1;
+    CHECK(remarks(2.0, 12.0) == 0);
+}
+
 TEST_CASE("A GIS gets the lines and areas of inflows, with what their tables say", "[program][inflow][gis]") {
     const Flood plane;
     write_text(plane.file(), std::string(kFlood) +
@@ -193,6 +223,23 @@ TEST_CASE("What of a flood's table has not come in is told, before the run and a
     CHECK(inflow["volume"].get<double>() == Approx(kVolume - left).epsilon(1e-12));
     CHECK_THAT(text_of(dir / "report.md"), Contains("; of their 240 m3 ") && Contains(" m3 had not come in |"));
     CHECK_THAT(text_of(dir / "report.md"), Contains("Of momentum and energy, what came in is taken off what left."));
+    // Until t after the peak the triangle has brought all but what is right of t.
+    const double until = 9.0 - std::sqrt(2.0 * left * 7.0 / 60.0);
+    CHECK_THAT(text_of(dir / "report.md"),
+               Contains(fmt::format("by the tables, until their row of t = {:.4g} s, {:.6g} "
+                                    "m3, ",
+                                    until, inflow["expected"].get<double>())));
+}
+
+TEST_CASE("A run that ends before anything came in says so", "[program][inflow]") {
+    const Flood plane;
+    const fs::path dir = plane.folder() / "out";
+    CHECK(plane.frana("run CASE --quiet --until 0.5 --set 'output.formats=[\"png\"]' --out " + dir.string()).code == 0);
+    const std::string report = text_of(dir / "report.md");
+    CHECK_THAT(report, Contains("--resume goes on: no material has come in yet") && !Contains("nothing moves"));
+    CHECK_THAT(report, Contains("| 0 m3 | 0 m3 | not reached | 0 m3 |"));
+    CHECK_FALSE(fs::exists(dir / "figures" / "sections_discharge.png"));
+    CHECK_THAT(report, Contains("| came in by inflows | 0 m3; no row of the tables' 240 m3 has come in yet |"));
 }
 
 TEST_CASE("A flood that is stopped in the middle of its table goes on with the same bits", "[program][inflow]") {

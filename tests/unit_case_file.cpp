@@ -122,6 +122,7 @@ TEST_CASE("An unknown key names the one that was meant", "[case]") {
     };
     CHECK(way_out("[scheme]\nshap = \"linear\"\n") == "did you mean scheme.shape?");
     CHECK(way_out("[scheme]\npreste = \"paper\"\n") == "did you mean scheme.preset?");
+    CHECK(way_out("[survey]\noutline = \"a.geojson\"\n") == "did you mean survey.footprint?");
     CHECK(way_out("[material]\nxi = 200\n") == "did you mean material.bed.xi?");
     CHECK(way_out("[materal]\ndensity = 1\n") == "did you mean material?");
     CHECK(way_out("[output]\nzzzz = 1\n") == "remove it, or see `frana describe`");

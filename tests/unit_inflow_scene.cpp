@@ -112,6 +112,17 @@ TEST_CASE("A table may go on long after the run, but not bring more by its end t
           }).find("m3 by time.end, more than 100 m") != std::string::npos);
 }
 
+TEST_CASE("Of a triangle that outlasts the run the way out is time.end or at, and no table", "[scene][inflow]") {
+    const std::string triangle = kLine + "volume = 1000\npeak = 20.0\n";  // takes 100 s
+    const Scene scene = built(with(triangle + "at = 5\n"));
+    CHECK(std::count(scene.log.begin(), scene.log.end(),
+                     "inflow torrent: found that the triangle of volume goes on to 105 s; expected time.end = 20 s or "
+                     "less; what comes later does not come in; give a later time.end, or a smaller at") == 1);
+    CHECK(says(problem_of(with(triangle + "at = 30\n")), "volume",
+               "found that the triangle of volume begins at 30 s; expected a time before time.end = 20 s; give a "
+               "smaller at, or a later time.end"));
+}
+
 TEST_CASE("The line of an inflow, and of a section, may be that of a vector file", "[scene][inflow][sections]") {
     FakeGis gis = slope_gis();
     gis.lines["line.geojson"] = {{{1100, 2050}, {1100, 2050}, {1100, 2080}}};  // its first point twice
@@ -153,6 +164,9 @@ TEST_CASE("What an inflow cannot be is said in a sentence", "[scene][inflow]") {
     CHECK(says(problem_of(with(kLine)), "table", "not given, and no volume either"));
     CHECK(says(problem_of(with(kLine + "table = \"q.csv\"\npeak = \"rickenmann\"\n")), "peak",
                "found together with table"));
+    for (const char* of_volume : {"at", "rise"})
+        CHECK(says(problem_of(with(kLine + "table = \"q.csv\"\n" + of_volume + " = 4\n")), of_volume,
+                   "found together with table; expected it with volume only"));
     CHECK(says(problem_of(with(kLine + volume + "areal = 3\n")), "areal", "found an unknown key"));
     CHECK(says(problem_of(with(kLine + volume + "velocity = 0\n")), "velocity", "found 0"));
     CHECK(says(problem_of(with("line = [[1100, 2050], [1100, 2053]]\n" + volume)), "line", "found a line of 3 m"));
@@ -163,7 +177,8 @@ TEST_CASE("What an inflow cannot be is said in a sentence", "[scene][inflow]") {
                "found a line that runs down the slope of 26.6 degrees; expected one across the flow; turn it"));
     CHECK(says(problem_of(with(kLine + volume + "towards = [1100, 2200]\n")), "towards", "found towards on the line"));
     CHECK(says(problem_of(with(kLine + volume + "towards = [1190, 2060]\n")), "velocity",
-               "found velocity = \"normal\" on ground that rises by 26.6 degrees"));
+               "found velocity = \"normal\" on ground that rises by 26.6 degrees; expected a slope that the flow goes "
+               "down; give velocity = a number [m/s], or correct towards"));
     CHECK(says(problem_of(with(kLine + volume, "law = \"voellmy\"\nmu = 0.6\nxi = 400\n")), "velocity",
                "found velocity = \"normal\" where the material stops"));
     CHECK(says(problem_of(with(kLine + volume, "law = \"coulomb\"\nmu = 0.2\n")), "velocity",

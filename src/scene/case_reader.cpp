@@ -60,13 +60,23 @@ std::vector<std::string> table_names() {
     return names;
 }
 
+/// A name in the table for the same as `name` is in other tables; empty: none.
+std::string same_thing(const std::string& name, const std::vector<std::string>& names) {
+    static const std::vector<std::string> outlines = {"outline", "area", "footprint"};
+    if (std::find(outlines.begin(), outlines.end(), name) == outlines.end()) return {};
+    for (const std::string& other : outlines)
+        if (std::find(names.begin(), names.end(), other) != names.end()) return other;
+    return {};
+}
+
 /// The key that was meant by an unknown one. It is a neighbour in its table, the same name elsewhere, or the nearest of
 /// all keys and tables. Empty when none is near.
 std::string meant(const std::string& key) {
     const std::string table = table_of(key);
     const std::string name = table.empty() ? key : key.substr(table.size() + 1);
-    const std::string neighbour = closest(name, names_in(table));
-    if (!neighbour.empty()) return table + "." + neighbour;
+    const std::vector<std::string> here = names_in(table);
+    for (const std::string& neighbour : {closest(name, here), same_thing(name, here)})
+        if (!neighbour.empty()) return table + "." + neighbour;
     std::vector<std::string> all = table_names();
     for (const Parameter& parameter : parameters()) {
         if (parameter.name() == name) return parameter.key;

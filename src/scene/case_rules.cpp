@@ -357,8 +357,10 @@ void CaseReader::check_inflow(const std::string& prefix) {
         wrong(prefix + "table", "not given, and no volume either",
               "expected the discharge over time, or its volume [m3]",
               "add table = ... or volume = ... under [[inflow]]");
-    if (case_.given(prefix + "peak") && there("table"))
-        wrong(prefix + "peak", "found together with table", "expected it with volume only", "remove one of them");
+    for (const char* of_volume : {"peak", "at", "rise"})
+        if (case_.given(prefix + of_volume) && there("table"))
+            wrong(prefix + of_volume, "found together with table", "expected it with volume only",
+                  "remove one of them");
 }
 
 /// A zone has a place, and says something of the case's laws and of nothing else.

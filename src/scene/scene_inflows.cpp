@@ -362,16 +362,22 @@ private:
                 "found {:.4g} m3{}, more than {:.0f} m of depth on all of the terrain; expected less; check "
                 "the units",
                 comes, given("table") ? " by time.end" : "", kDeepest));
+        require_time(table);
+    }
+
+    void require_time(const Hydrograph& table) const {
+        const bool own = given("table");
+        const char* const what = own ? "a table that" : "that the triangle of volume";
         if (table.time.front() >= scene_.end)
-            throw UserError(
-                fmt::format("found a table that begins at {:.6g} s; expected a time before time.end = {:.6g} s; "
-                            "shift the table, or run longer",
-                            table.time.front(), scene_.end));
+            throw UserError(fmt::format(
+                "found {} begins at {:.6g} s; expected a time before time.end = {:.6g} s; {}", what, table.time.front(),
+                scene_.end, own ? "shift the table, or run longer" : "give a smaller at, or a later time.end"));
         if (table.time.back() > scene_.end)
             scene_.log.push_back(
-                fmt::format("inflow {}: found a table that goes on to {:.6g} s; expected time.end = {:.6g} s or "
-                            "less; what comes later does not come in; run longer, or cut the table",
-                            inflow_.name, table.time.back(), scene_.end));
+                fmt::format("inflow {}: found {} goes on to {:.6g} s; expected time.end = {:.6g} s or less; what comes "
+                            "later does not come in; {}",
+                            inflow_.name, what, table.time.back(), scene_.end,
+                            own ? "run longer, or cut the table" : "give a later time.end, or a smaller at"));
     }
 
     void set_speed(const Hydrograph& table) {
@@ -426,8 +432,8 @@ private:
         if (!(inflow_.slope > 0.0))
             throw UserError(
                 fmt::format("found velocity = \"normal\" on ground that rises by {:.3g} degrees; expected a slope "
-                            "that the flow goes down; {}",
-                            -degrees, way_out));
+                            "that the flow goes down; {}{}",
+                            -degrees, way_out, given("towards") ? ", or correct towards" : ""));
         const bed::NormalFlow flow =
             bed::normal_flow(law(), discharge / inflow_.width(), {inflow_.slope, scene_.gravity, scene_.density});
         if (flow.speed == 0.0)

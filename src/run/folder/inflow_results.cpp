@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/discharge.h"
 #include "base/error.h"
 #include "io/gdal_reader.h"
 #include "run/folder/barrier_plans.h"
@@ -12,6 +13,16 @@
 #include "scene/lines_of_case.h"
 
 namespace frana {
+
+double time_of(const Inflow& inflow, double volume) {
+    constexpr int kHalvings = 60;  // to round-off
+    double low = inflow.time.front(), high = inflow.time.back();
+    for (int n = 0; n < kHalvings; ++n) {
+        const double middle = 0.5 * (low + high);
+        (volume_until(inflow, middle) < volume ? low : high) = middle;
+    }
+    return high;
+}
 
 std::vector<InflowPlace> inflow_places(const CaseFile& file, const std::string& crs_wkt,
                                        std::vector<std::string>& warnings) {

@@ -22,6 +22,9 @@ struct InflowPlace {
 std::vector<InflowPlace> inflow_places(const CaseFile& file, const std::string& crs_wkt,
                                        std::vector<std::string>& warnings);
 
+/// When a table has brought a volume [m^3], at most its whole [s].
+double time_of(const Inflow& inflow, double volume);
+
 /// As maps show them. Every ring of an area is closed.
 std::vector<NamedLine> inflow_plans(const std::vector<InflowPlace>& places);
 

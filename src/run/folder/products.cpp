@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char *kElevation = "elevation", *kFinalElevation = "final_elevation", *kMetres = "m";
-constexpr const char *kForest = "forest_pressure", *kForestKey = "forest.detrainment";
+constexpr const char* kForestKey = "forest.detrainment";
 constexpr const char *kGroundAtEnd = "elevation of the bed at the end of the run", *kLying = "lying_depth",
                      *kLiesThere = "depth of what lies there at the end, flow and what has become bed, along gravity";
 
@@ -209,8 +209,8 @@ std::vector<ProductRaster> friction_rasters(const Friction& friction, const Rast
 
 std::optional<ProductRaster> forest_raster(const Raster& pressure, const Raster& bed) {
     if (pressure.values.size() != bed.values.size()) return {};
-    ProductRaster product{kForest, find_parameter(kForestKey)->unit, find_parameter(kForestKey)->meaning, bed};
-    product.raster.source = kForest;
+    ProductRaster product{kForestRaster, find_parameter(kForestKey)->unit, find_parameter(kForestKey)->meaning, bed};
+    product.raster.source = kForestRaster;
     double low = INFINITY, high = -INFINITY;
     for (std::size_t node = 0; node < pressure.values.size(); ++node) {
         if (std::isnan(bed.values[node])) continue;
@@ -222,7 +222,7 @@ std::optional<ProductRaster> forest_raster(const Raster& pressure, const Raster&
 }
 
 std::vector<std::pair<std::string, const Parameter*>> friction_keys() {
-    std::vector<std::pair<std::string, const Parameter*>> keys = {{kForest, find_parameter(kForestKey)}};
+    std::vector<std::pair<std::string, const Parameter*>> keys = {{kForestRaster, find_parameter(kForestKey)}};
     for (const LawPlace& place : kLawPlaces)
         for (const Parameter& key : parameters())
             if (key.switch_key == place.choice && key.kind == Kind::number_or_path)

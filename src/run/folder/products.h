@@ -63,7 +63,8 @@ std::optional<Raster> ever_covered(const std::vector<ProductRaster>& rasters);
 /// The parameters of a spatially varying friction, as the nodes of its bed have them: mu, xi, ...
 std::vector<ProductRaster> friction_rasters(const Friction& friction, const Raster& bed);
 
-/// "forest_pressure" of a forest that differs spatially: Forest::pressure, and its ground. Nothing of any other.
+inline constexpr const char* kForestRaster = "forest_pressure";
+/// That raster of a forest that differs spatially: Forest::pressure, and its ground. Nothing of any other.
 std::optional<ProductRaster> forest_raster(const Raster& pressure, const Raster& bed);
 
 /// The names that such rasters can have, "mu", "rheology_viscosity", "water_manning_n", "forest_pressure", and their keys

@@ -30,6 +30,12 @@ std::string row(const std::string& name, const std::string& value) {
     return fmt::format("| {} | {} |\n", name, cell(value));
 }
 
+/// "103520 m2": as plain digits up to 1e7.
+std::string area_text(double area) {
+    constexpr double kWhole = 1e4, kMost = 1e7;  // {:.5g} is as plain below, and shorter beyond [m2]
+    return area >= kWhole && area < kMost ? fmt::format("{:.0f} m2", area) : fmt::format("{:.5g} m2", area);
+}
+
 std::string heading(const RunRecord& r) {
     const RunSummary& s = r.summary;
     std::string text = fmt::format("# {}\n\n", r.title);
@@ -55,24 +61,30 @@ std::string bed_text(const RunRecord& r) {
     std::string text = fmt::format(
         "the flow took {:.6g} m3 of it, by the density of the flow (its mass grew {:.3g} times), {:.3g} m deep at "
         "most; "
-        "left behind {:.6g} m3",
+        "{} {:.6g} m3",
         r.taken_of_bed / r.density, given > 0.0 ? (given + r.taken_of_bed) / given : 1.0, bed.deepest,
-        bed.deposited / r.density);
+        r.by_trees_alone ? "held back by trees:" : "left behind", bed.deposited / r.density);
     if (bed.deposited > 0.0)
         text += fmt::format(", of which it took {:.6g} m3 again and {:.6g} m3 lie there at the end", again / r.density,
                             lies_behind(r) / r.density);
     return text + fmt::format("; balance {:.1e}", budget(r.summary.first, r.summary.last).bed_error);
 }
 
-/// "9100 m3; by the tables 9100 m3, difference 1e-12; of their 12000 m3 2900 m3 had not come in".
-std::string inflow_text(const InflowBudget& inflow) {
+/// "9100 m3; by the tables, until their row of t = 95.2 s, 9100 m3, difference 1e-12; of their 12000 m3 2900 m3 had not
+/// come in". A table comes in as rows of columns, each when it is complete. Several tables have rows of several times.
+std::string inflow_text(const RunRecord& r) {
     constexpr double kNone = 1e-9;  // of the tables: round-off of their sums
+    const InflowBudget& inflow = *r.extras.inflow;
     const double left = inflow.tables - inflow.expected;
-    return fmt::format("{:.6g} m3; by the tables {:.6g} m3, difference {:.1e}", inflow.volume, inflow.expected,
-                       inflow.volume - inflow.expected) +
-           (left > kNone * inflow.tables
-                ? fmt::format("; of their {:.6g} m3 {:.6g} m3 had not come in", inflow.tables, left)
-                : "");
+    const std::string so_far =
+        fmt::format("{:.6g} m3, difference {:.1e}", inflow.expected, inflow.volume - inflow.expected);
+    if (!(left > kNone * inflow.tables)) return fmt::format("{:.6g} m3; by the tables {}", inflow.volume, so_far);
+    if (!(inflow.expected > 0.0))
+        return fmt::format("{:.6g} m3; no row of the tables' {:.6g} m3 has come in yet", inflow.volume, inflow.tables);
+    const std::string until = r.inflow_until ? fmt::format("their row of t = {:.4g} s", *r.inflow_until)
+                                             : "the last row of each that came in";
+    return fmt::format("{:.6g} m3; by the tables, until {}, {}; of their {:.6g} m3 {:.6g} m3 had not come in",
+                       inflow.volume, until, so_far, inflow.tables, left);
 }
 
 /// "300 m3 at t = 12.4 s, when the flow reached it".
@@ -104,7 +116,7 @@ std::string results(const RunRecord& r) {
     if (!r.extras.late.empty())
         text += row("release volume, with what entered later",
                     fmt::format("{:.6g} m3", r.release_volume + released_later(r)));
-    if (r.extras.inflow) text += row("came in by inflows", inflow_text(*r.extras.inflow));
+    if (r.extras.inflow) text += row("came in by inflows", inflow_text(r));
     for (const LateEntry& late : r.extras.late) text += row("entered later: " + late.name, late_text(late));
     text += row("simulated time",
                 fmt::format("{:.6g} s of {:.6g} s, {} steps, {} frames", s.last.time, r.end, s.steps, s.frames));
@@ -116,13 +128,12 @@ std::string results(const RunRecord& r) {
                 fmt::format("{:.4g} kPa", 1e-3 * r.peak_dynamic_pressure));
     text += row("largest bed pressure", fmt::format("{:.4g} kPa", 1e-3 * r.peak_pressure));
     text += row("farthest front from " + r.front_origin, fmt::format("{:.5g} m", s.extremes.max_front));
-    text += row(fmt::format("area ever deeper than {:.3g} m", r.footprint_depth),
-                fmt::format("{:.5g} m2", r.footprint_area));
+    text += row(fmt::format("area ever deeper than {:.3g} m", r.footprint_depth), area_text(r.footprint_area));
     if (std::isfinite(r.flow_width))
         text += row("width of the flow, median over its length",
                     fmt::format("{:.4g} m, {:.3g} cells", r.flow_width, r.flow_width / r.grid.cell));
     text += depths_at_end(r);
-    text += row("mean speed at the end", fmt::format("{:.3g} m/s", s.last.mean_speed));
+    text += row("mean speed of what still flows, at the end", fmt::format("{:.3g} m/s", s.last.mean_speed));
     if (r.extras.breakage) {
         const Breakage& b = *r.extras.breakage;
         std::string shares;
@@ -143,9 +154,10 @@ std::string results(const RunRecord& r) {
     if (s.last.bed.initial > 0.0)
         text += row("erodible bed", bed_text(r));
     else if (s.last.bed.deposited > 0.0)
-        text += row("became bed", fmt::format("{:.6g} m3, of which {:.6g} m3 lie there at the end; balance {:.1e}",
-                                              s.last.bed.deposited / r.density, s.last.bed.mass / r.density,
-                                              budget(s.first, s.last).bed_error));
+        text += row(r.by_trees_alone ? "held back by trees" : "became bed",
+                    fmt::format("{:.6g} m3, of which {:.6g} m3 lie there at the end; balance {:.1e}",
+                                s.last.bed.deposited / r.density, s.last.bed.mass / r.density,
+                                budget(s.first, s.last).bed_error));
     text += row("left the domain", left_text(r));
     return text + "\n";
 }
@@ -387,9 +399,11 @@ std::string sections(const RunRecord& r) {
         "|---|---|---|---|---|---|\n";
     for (const SectionSummary& s : r.sections) {
         const double azimuth = std::fmod(std::atan2(s.towards.x(), s.towards.y()) * constants::kRadian + 360.0, 360.0);
-        text += fmt::format(
-            "| {} | {:.0f} degrees from north | {:.6g} m3 | {:.6g} m3 | {:.4g} m3/s at {:.4g} s | {:.4g} m3 |\n",
-            s.name, azimuth, s.volume, s.sediment, s.peak, s.peak_time, s.integral);
+        const bool reached = s.peak > 0.0 || s.integral != 0.0 || std::abs(s.volume) > 0.0;
+        text += fmt::format("| {} | {:.0f} degrees from north | {:.6g} m3 | {:.6g} m3 | {} | {:.4g} m3 |\n", s.name,
+                            azimuth, s.volume, s.sediment,
+                            reached ? fmt::format("{:.4g} m3/s at {:.4g} s", s.peak, s.peak_time) : "not reached",
+                            s.integral);
     }
     return text +
            "\nThe volume is that of the columns that passed, each with the mass that it had there, and is exact for "
@@ -463,9 +477,9 @@ std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_d
                         left_text(r), budget(s.first, s.last).mass_error);
     text += fmt::format("  deepest    {:.4g} m, fastest {:.4g} m/s, front at {:.5g} m\n", s.extremes.max_depth,
                         s.extremes.max_speed, s.extremes.max_front);
-    text +=
-        fmt::format("  covered    {:.5g} m2 deeper than {:.3g} m; deepest at the end {:.4g} m{}\n", r.footprint_area,
-                    r.footprint_depth, r.final_depth, s.last.bed.deposited > 0.0 ? ", with what became bed" : "");
+    text += fmt::format("  covered    {} deeper than {:.3g} m; deepest at the end {:.4g} m{}\n",
+                        area_text(r.footprint_area), r.footprint_depth, r.final_depth,
+                        s.last.bed.deposited > 0.0 ? ", with what became bed" : "");
     if (r.comparison) text += fmt::format("  survey     {}\n", comparison_line(*r.comparison));
     text += fmt::format("  report     {}\n", place("report.md"));
     text += fmt::format("  pictures   {}\n", r.figures.empty() ? "-" : (run_dir / "figures").string());

@@ -274,7 +274,13 @@ void add_gauges(const FigureSource& source, Gallery& gallery) {
 }
 
 void add_sections(const FigureSource& source, Gallery& gallery) {
-    if (source.sections.empty()) return;
+    const fs::path folder = source.run_dir / "sections";
+    const auto empty = [&](const Section& section) {
+        const fs::path table = folder / (section.name + ".csv");
+        std::error_code none;
+        return fs::exists(table, none) && says_nothing(read_table(table));  // a picture of axes alone
+    };
+    if (std::all_of(source.sections.begin(), source.sections.end(), empty)) return;
     gallery.add({"figures/sections_discharge.png", "discharge through the sections, and the volume that passed"},
                 [&source](const fs::path& png, std::string& why_not) {
                     return render_chart(section_chart(source), png, why_not);

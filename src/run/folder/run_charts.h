@@ -14,7 +14,8 @@ void add_profile(const FigureSource& source, const std::string& name, Gallery& g
 /// figures/gauges_flow.png: depth and speed of all gauges over time; nothing without gauges.
 void add_gauges(const FigureSource& source, Gallery& gallery);
 
-/// figures/sections_discharge.png: discharge through all sections over time, and the volume that passed; nothing without.
+/// figures/sections_discharge.png: discharge through all sections over time, and the volume that passed; nothing
+/// without, or where the flow reached none.
 void add_sections(const FigureSource& source, Gallery& gallery);
 
 /// figures/barrier_<name>.png: force, run-up and what went over each barrier that was hit and has a table in

@@ -58,7 +58,7 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
     map.bed = source.bed;
     map.field = product.raster.values;
     // Files are in SI units, pictures in those of the field.
-    const bool pascal = product.unit == "Pa" && product.name != "forest_pressure";
+    const bool pascal = product.unit == "Pa" && product.name != kForestRaster;
     if (pascal)
         for (double& value : map.field) value *= 1e-3;
     map.shown_above = source.footprint_depth;
@@ -156,8 +156,10 @@ void add_figures(const FigureSource& source, Gallery& gallery) {
     add_change_map(source, gallery);
     for (const ProductRaster& product : source.rasters)
         if (is_friction(product.name))
-            add_map(source, product, product.name + " under the flow", find_product(source.rasters, "peak_depth"),
-                    gallery);
+            add_map(source, product,
+                    product.name == kForestRaster ? std::string("detrainment K of the forest")
+                                                  : product.name + " under the flow",
+                    find_product(source.rasters, "peak_depth"), gallery);
     if (const ProductRaster* peak = find_product(source.rasters, "peak_depth")) add_view(source, *peak, gallery);
     add_overlay(source, gallery);
     add_bed_change(source, gallery);

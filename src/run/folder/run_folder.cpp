@@ -22,7 +22,8 @@ using Json = nlohmann::ordered_json;
 /// "(mu|xi|...)"
 static std::string friction_names() {
     std::string names;
-    for (const auto& [name, key] : friction_keys()) names += (names.empty() ? "(" : "|") + name;
+    for (const auto& [name, key] : friction_keys())
+        if (name != kForestRaster) names += (names.empty() ? "(" : "|") + name;
     return names + ")";
 }
 
@@ -51,7 +52,8 @@ const std::vector<ProductKind>& product_kinds() {
         {"", "series\\.nc", "the flow over time for readers of netCDF: QGIS, xarray, Panoply", false},
         {"rasters", raster_names + "\\.tif", "GeoTIFF", false},
         {"rasters", friction_names() + "\\.tif", "GeoTIFF of the friction as it was used", false},
-        {"rasters", "(" + raster_names + "|" + friction_names() + ")\\.qml",
+        {"rasters", "forest_pressure\\.tif", "GeoTIFF of the detrainment K of the forest", false},
+        {"rasters", "(" + raster_names + "|forest_pressure|" + friction_names() + ")\\.qml",
          "styles of the rasters, which QGIS takes up with them", true},
         {"", "footprint\\.geojson", "outline of everything ever covered", false},
         {"", "footprint\\.qml", "style of that outline, which QGIS takes up with it", false},

@@ -32,6 +32,7 @@
 #include "run/folder/run_folder.h"
 #include "run/folder/run_insitu.h"
 #include "run/folder/run_page.h"
+#include "run/folder/section_ends.h"
 #include "run/folder/states.h"
 #include "run/simulation.h"
 #include "scene/taken_of_bed.h"
@@ -94,6 +95,8 @@ void note_energy_made(RunRecord& record) {
 
 void note_simulation(RunRecord& record, const Scene& scene, const Simulation& simulation) {
     record.extras = simulation.extras();
+    if (record.extras.inflow && scene.inflows.size() == 1)
+        record.inflow_until = time_of(scene.inflows.front(), record.extras.inflow->expected);
     for (const std::string& remark : simulation.remarks()) record.warnings.push_back(remark);
     note_rising_forces(record, scene);
     note_energy_made(record);
@@ -116,6 +119,13 @@ void note_results(RunRecord& record, const std::vector<ProductRaster>& rasters) 
             if (depth > record.final_flow_depth) record.final_flow_depth = depth;
         record.final_depth = std::max(record.final_flow_depth, largest(rasters, "lying_depth"));
     }
+}
+
+void note_section_ends(RunRecord& record, const Scene& scene, const std::vector<ProductRaster>& rasters) {
+    const ProductRaster* const peak = find_product(rasters, "peak_depth");
+    if (peak == nullptr) return;
+    for (std::string& remark : remarks_on_ends(scene.sections, peak->raster, record.footprint_depth))
+        record.warnings.push_back(std::move(remark));
 }
 
 void note_taken(RunRecord& record, const Scene& scene, const std::vector<ProductRaster>& rasters) {
@@ -378,6 +388,7 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     for (const std::string& warning : insitu_warnings(record.insitu)) record.warnings.push_back(warning);
     if (scene.deposition || scene.forest) add_lying_depth(rasters);
     note_results(record, rasters);
+    note_section_ends(record, scene, rasters);
     note_taken(record, scene, rasters);
     const Raster bed = shown_bed(scene, simulation, rasters);
     add_ground_at_end(rasters, bed, scene.bed_evolves());

@@ -180,6 +180,7 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     record.start = start_of_what_comes_in(scene);
     record.front_origin = front_origin(scene);
     record.page = asks_for_page(file);
+    record.by_trees_alone = scene.forest && !scene.deposition;
     record.warnings = scene.log;
     record.inflows = inflow_places(file, scene.bed.crs_wkt, record.warnings);
     return record;
@@ -210,15 +211,23 @@ std::string motion_text(const RunSummary& s) {
 /// Whether a rule, or the end of the time, stopped what was still in motion.
 bool stopped_in_motion(const RunSummary& s) { return s.ended_by_rule() && s.motion.fastest > 0.0; }
 
+/// Whether nothing was there at the start, and what is to come has not yet.
+bool nothing_came(const RunRecord& record) {
+    const Status &first = record.summary.first, &last = record.summary.last;
+    const bool to_come = record.extras.inflow || !record.extras.late.empty();
+    return to_come && first.mass == 0.0 && last.mass == 0.0 && last.mass_in == 0.0;
+}
+
 std::string reason_text(const RunRecord& record) {
     const RunSummary& summary = record.summary;
     const bool moves = stopped_in_motion(summary);
+    const char* const still = nothing_came(record) ? "no material has come in yet" : "nothing moves any more";
     if (summary.reason == "until")
         return fmt::format("stopped by --until at {:.6g} of {:.6g} s; --resume goes on: {}", record.end,
-                           record.whole_end, moves ? motion_text(summary) : "nothing moves any more");
+                           record.whole_end, moves ? motion_text(summary) : still);
     if (summary.reason == "end")
         return moves ? "stopped by the rule time.end, the simulated time is over: " + motion_text(summary)
-                     : "the simulated time is over, and nothing moves any more";
+                     : fmt::format("the simulated time is over, and {}", still);
     if (summary.reason == "rest")
         return moves ? "stopped by the rule time.stop_at_rest, what still moves can change the deposit no more: " +
                            motion_text(summary)

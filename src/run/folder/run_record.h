@@ -55,6 +55,7 @@ struct RunRecord {
     double peak_dynamic_pressure = 0.0;                              ///< [Pa]
     double final_depth = 0.0;       ///< deepest at the end, with what has become bed [m]
     double final_flow_depth = 0.0;  ///< deepest flow at the end [m]
+    bool by_trees_alone = false;    ///< what became bed is what trees held back: there is a forest and no deposition
     double taken_of_bed = 0.0;      ///< of that which was there at the start, not of what the flow had left behind [kg]
     std::optional<Vec2> start;      ///< of the path of runouts, where nothing lay at the start
     double flow_width = Raster::nodata;  ///< median over the footprint's length, compare/flow_width.h [m]
@@ -64,6 +65,7 @@ struct RunRecord {
     std::vector<BarrierSource> barrier_sources;
     std::vector<ReleaseSource> release_sources;
     std::vector<InflowPlace> inflows;
+    std::optional<double> inflow_until;  ///< the last row of the only inflow's table that has come in [s]
     /// That the front is measured from.
     std::string front_origin = "the release's centre";
     RunSummary summary;
