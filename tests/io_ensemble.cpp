@@ -68,7 +68,10 @@ TEST_CASE("an ensemble of ponds has the probabilities and quantiles of their dep
     CHECK(json["failed"] == 0);
     CHECK(json["results"]["max_depth_m"]["mean"].get<double>() == Approx(1.5).margin(0.025));  // of stratified means
     for (const Json& file : json["files"]) CHECK(fs::exists(pond.path("many") / file.get<std::string>()));
-    CHECK_THAT(text_of(pond.path("many/report.md")), Contains("largest depth [m]"));
+    CHECK_THAT(text_of(pond.path("many/report.md")),
+               Contains("largest depth [m]") &&
+                   Contains("| 5 % of the runs stay below | 50 % of the runs stay below |") &&
+                   Contains("- `release.0.depth`: uniform, 1 to 2 m\n"));
 
     SECTION("another threshold needs no run") {
         const Outcome more = pond.frana("ensemble --join many --exceed peak_depth=1.75 --quiet");
