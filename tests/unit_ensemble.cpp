@@ -433,6 +433,27 @@ TEST_CASE("A varied key of a numbered table that the case does not have is refus
     CHECK_THAT(complaint("material.zone.0.mu"), Contains("it has 0 [[material.zone]]"));
 }
 
+TEST_CASE("An ensemble says where zones set a key of the bed that varies", "[ensemble]") {
+    const FakeGis gis = frana::test::slope_gis();
+    const EnsembleFile file;
+    const auto remarks = [&](const std::string& zones, const std::string& more) {
+        file.write("case.toml", on_long_plane + zones);
+        const EnsemblePlan plan =
+            file.read(head + "[[ensemble.vary]]\nkey = \"material.bed.mu\"\nrange = [0.1, 0.3]\n" + more);
+        std::string found;
+        for (const std::string& remark : ensemble_base(plan, gis, {}).remarks)
+            if (remark.find("holds outside of zones") != std::string::npos) found += remark;
+        return found;
+    };
+    const std::string zone = "[[material.zone]]\nbelow = 5000\nmu = 0.2\n";
+    CHECK(remarks("", "").empty());
+    CHECK(remarks("[[material.zone]]\nbelow = 5000\ncohesion = 10\n", "").empty());
+    CHECK(remarks(zone, "[[ensemble.vary]]\nkey = \"material.zone.0.mu\"\nrange = [0.1, 0.3]\n").empty());
+    CHECK(remarks(zone, "") ==
+          "material.bed.mu holds outside of zones that set it (material.zone.0); vary material.zone.0.mu as well if it "
+          "is meant");
+}
+
 TEST_CASE("What varies is told with its distribution's numbers", "[ensemble]") {
     const EnsembleFile file;
     const auto words = [&](const std::string& method, const std::string& vary) {

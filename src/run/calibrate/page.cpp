@@ -166,6 +166,7 @@ std::string calibration_section(const Calibration& c) {
                             c.not_at_rest);
     if (effective < kNoSpread) page += " Fewer than 5 have no spread that means anything, so it is left out.";
     if (effective < kFewSamples) page += " Fewer than 50 are few: give more samples or rounds, or a larger sigma.";
+    for (const std::string& remark : c.remarks) page += fmt::format("\n\n{}.", remark);
     return page + "\n\n" + misfits_section(c, best) + predictions_section(c);
 }
 
