@@ -355,8 +355,9 @@ TEST_CASE("an ensemble's forecast, job script and mistakes", "[ensemble]") {
     pond.write("many.toml", depths);
     const Outcome check = pond.frana("ensemble many.toml --out many --check");
     CHECK(check.code == 0);
-    CHECK_THAT(check.out,
-               Contains("20 samples by \"lhs\"") && Contains("core seconds") && Contains("release.0.depth=1."));
+    CHECK_THAT(check.out, Contains("20 samples by \"lhs\"") && Contains("core seconds") &&
+                              Contains("release.0.depth=1.") &&
+                              Contains("MB of peaks on disk, maps and figures come on top"));
     CHECK_FALSE(fs::exists(pond.path("many")));
     const Outcome script = pond.frana("ensemble many.toml --out many --slurm 40");
     CHECK(script.code == 0);
