@@ -71,9 +71,11 @@ int foretell(const EnsembleRun& ensemble, const EnsembleOptions& options) {
         bytes += 4.0 * static_cast<double>(result->peaks.pixels()) * static_cast<double>(plan.fields.size());
     }
     const double count = static_cast<double>(plan.samples);
-    std::cout << fmt::format("about {:.3g} core seconds, {:.3g} s on {} threads; at most {:.3g} MB on disk\n",
-                             seconds * count, seconds * count / threads_for_runs(options.threads),
-                             threads_for_runs(options.threads), 0.5e-6 * bytes * count);
+    std::cout << fmt::format(
+        "about {:.3g} core seconds, {:.3g} s on {} threads; at most {:.3g} MB of peaks on disk, maps and "
+        "figures come on top\n",
+        seconds * count, seconds * count / threads_for_runs(options.threads), threads_for_runs(options.threads),
+        0.5e-6 * bytes * count);
     return 0;
 }
 

@@ -108,6 +108,29 @@ TEST_CASE("A study whose last two runs lie two cells apart has not converged", "
     CHECK_FALSE(study.verdict.enough);
 }
 
+TEST_CASE("A study takes the straight reach where its path ends before the fronts", "[converge]") {
+    const FreshFolder folder;
+    leave_run(folder.path() / "cell_5", 5.0, 120.0);
+    leave_run(folder.path() / "cell_2.5", 2.5, 120.0);
+    Raster bed = bed_of(2.5);
+    for (Index j = 0; j < bed.geometry.ny; ++j)
+        for (Index i = 0; i < bed.geometry.nx; ++i)
+            if (bed.geometry.x(i) > 80.0) bed.at(i, j) = Raster::nodata;  // an edge, at which paths end
+    ConvergenceStudy study = study_of(folder.path(), {5.0, 2.5});
+    measure_runs(study, bed);
+    REQUIRE(study.remarks.size() == 1);
+    // From 78.75 m, the last node with ground, to the edge of the last pixel of the flow.
+    CHECK_THAT(study.remarks[0],
+               Contains("the path ends 41.25 m before the farther front and goes on straight there; so "
+                        "the straight reach counts as the runout"));
+    for (const CellFigures& f : study.figures) CHECK(f.runout == f.reach);
+    CHECK_THAT(study_section(study), Contains("| straight reach [m] |") && !Contains("along the path [m]"));
+    ConvergenceStudy whole = study_of(folder.path(), {5.0, 2.5});
+    measure_runs(whole, bed_of(2.5));
+    CHECK(whole.remarks.empty());
+    CHECK_THAT(study_section(whole), Contains("| runout along the path [m] |"));
+}
+
 TEST_CASE("A study says which file of a run it lacks", "[converge]") {
     const FreshFolder folder;
     leave_run(folder.path() / "cell_10", 10.0, 120.0);

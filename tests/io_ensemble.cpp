@@ -68,7 +68,10 @@ TEST_CASE("an ensemble of ponds has the probabilities and quantiles of their dep
     CHECK(json["failed"] == 0);
     CHECK(json["results"]["max_depth_m"]["mean"].get<double>() == Approx(1.5).margin(0.025));  // of stratified means
     for (const Json& file : json["files"]) CHECK(fs::exists(pond.path("many") / file.get<std::string>()));
-    CHECK_THAT(text_of(pond.path("many/report.md")), Contains("largest depth [m]"));
+    CHECK_THAT(text_of(pond.path("many/report.md")),
+               Contains("largest depth [m]") &&
+                   Contains("| 5 % of the runs stay below | 50 % of the runs stay below |") &&
+                   Contains("- `release.0.depth`: uniform, 1 to 2 m\n"));
 
     SECTION("another threshold needs no run") {
         const Outcome more = pond.frana("ensemble --join many --exceed peak_depth=1.75 --quiet");
@@ -352,8 +355,9 @@ TEST_CASE("an ensemble's forecast, job script and mistakes", "[ensemble]") {
     pond.write("many.toml", depths);
     const Outcome check = pond.frana("ensemble many.toml --out many --check");
     CHECK(check.code == 0);
-    CHECK_THAT(check.out,
-               Contains("20 samples by \"lhs\"") && Contains("core seconds") && Contains("release.0.depth=1."));
+    CHECK_THAT(check.out, Contains("20 samples by \"lhs\"") && Contains("core seconds") &&
+                              Contains("release.0.depth=1.") &&
+                              Contains("MB of peaks on disk, maps and figures come on top"));
     CHECK_FALSE(fs::exists(pond.path("many")));
     const Outcome script = pond.frana("ensemble many.toml --out many --slurm 40");
     CHECK(script.code == 0);

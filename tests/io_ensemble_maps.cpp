@@ -94,6 +94,29 @@ TEST_CASE("Indices stand on every pixel, of the numbers at gauges too", "[ensemb
     CHECK(density.values[40] > 0.3);
 }
 
+TEST_CASE("Shares of a variance that cannot be are told to be of too few samples", "[ensemble]") {
+    const Pond pond;
+    const std::string keys =
+        "[[ensemble.vary]]\nkey = \"release.0.depth\"\nrange = [1.0, 2.0]\n"
+        "[[ensemble.vary]]\nkey = \"material.density\"\nrange = [1000, 2000]\n";
+    for (const int samples : {5, 64}) {
+        CAPTURE(samples);
+        const std::string out = "of_" + std::to_string(samples);
+        pond.write("many.toml", "[ensemble]\ncase = \"case.toml\"\nmethod = \"saltelli\"\nquantiles = []\nsamples = " +
+                                    std::to_string(samples) + "\n" + keys);
+        REQUIRE(pond.frana("ensemble many.toml --quiet --out " + out).code == 0);
+        bool outside = false;
+        const Json json = Json::parse(text_of(pond.path(out + "/ensemble.json")));
+        for (const Json& outcome : json["sensitivity"])
+            for (const Json& key : outcome)
+                for (const char* share : {"first_order", "total"})
+                    outside = outside || key[share] < -0.005 || key[share] > 1.005;  // as the table shows them
+        CHECK(outside == (samples == 5));
+        const bool told = text_of(pond.path(out + "/report.md")).find("Shares below 0 or above 1") != std::string::npos;
+        CHECK(told == outside);
+    }
+}
+
 TEST_CASE("Morris' mean effects stand on every pixel", "[ensemble]") {
     const Pond pond;
     pond.write("many.toml",

@@ -10,6 +10,7 @@
 #include "ensemble/sample_run.h"
 #include "ensemble/sensitivity.h"
 #include "ensemble/statistics.h"
+#include "ensemble/vary_words.h"
 #include "fresh_folder.h"
 #include "growing_slide.h"
 #include "scene/bed_over.h"
@@ -430,6 +431,49 @@ TEST_CASE("A varied key of a numbered table that the case does not have is refus
                Contains("many.toml: release.1.depth: found a varied key of a table that ") &&
                    Contains("case.toml does not have; it has 1 [[release]], which count from 0"));
     CHECK_THAT(complaint("material.zone.0.mu"), Contains("it has 0 [[material.zone]]"));
+}
+
+TEST_CASE("An ensemble says where zones set a key of the bed that varies", "[ensemble]") {
+    const FakeGis gis = frana::test::slope_gis();
+    const EnsembleFile file;
+    const auto remarks = [&](const std::string& zones, const std::string& more) {
+        file.write("case.toml", on_long_plane + zones);
+        const EnsemblePlan plan =
+            file.read(head + "[[ensemble.vary]]\nkey = \"material.bed.mu\"\nrange = [0.1, 0.3]\n" + more);
+        std::string found;
+        for (const std::string& remark : ensemble_base(plan, gis, {}).remarks)
+            if (remark.find("holds outside of zones") != std::string::npos) found += remark;
+        return found;
+    };
+    const std::string zone = "[[material.zone]]\nbelow = 5000\nmu = 0.2\n";
+    CHECK(remarks("", "").empty());
+    CHECK(remarks(zone, "[[ensemble.vary]]\nkey = \"material.zone.0.mu\"\nrange = [0.1, 0.3]\n").empty());
+    CHECK(remarks(zone, "") ==
+          "material.bed.mu holds outside of zones that set it (material.zone.0); vary material.zone.0.mu as well if it "
+          "is meant");
+}
+
+TEST_CASE("What varies is told with its distribution's numbers", "[ensemble]") {
+    const EnsembleFile file;
+    const auto words = [&](const std::string& method, const std::string& vary) {
+        return words_of(
+            file.read("[ensemble]\ncase = \"case.toml\"\n" + method + "[[ensemble.vary]]\n" + vary).vary[0]);
+    };
+    const std::string lhs = "samples = 2\n", depth = "key = \"release.0.depth\"\n";
+    CHECK(words(lhs, depth + "range = [0.5, 2]\n") == "uniform, 0.5 to 2 m");
+    CHECK(words("method = \"grid\"\n", depth + "range = [0.5, 2]\nlevels = 3\n") == "uniform, 0.5 to 2 m, on 3 levels");
+    CHECK(words(lhs, depth + "distribution = \"triangular\"\nrange = [0.5, 1, 2]\n") ==
+          "triangular, 0.5 to 2 m, most likely 1 m");
+    CHECK(words(lhs, depth + "distribution = \"normal\"\nmean = 1\nsd = 0.2\nrange = [0.5, 2]\n") ==
+          "normal, mean 1 m, standard deviation 0.2 m, cut to 0.5 to 2 m");
+    const std::string xi = "key = \"material.bed.xi\"\n";
+    CHECK(words(lhs, xi + "distribution = \"lognormal\"\nmedian = 400\nfactor = 2\nrange = [100, 2000]\n") ==
+          "lognormal, median 400 m/s^2, factor 2, cut to 100 to 2000 m/s^2");
+    CHECK(words(lhs, depth + "distribution = \"beta\"\nrange = [0.5, 2]\nalpha = 2\nbeta = 5\n") ==
+          "beta, 0.5 to 2 m, alpha 2, beta 5");
+    CHECK(words(lhs, depth + "distribution = \"discrete\"\nvalues = [1, 2]\nweights = [0.75, 0.25]\nreturn_periods = "
+                             "[30, 100]\n") ==
+          "discrete, 1 m with weight 0.75 (30 years), 2 m with weight 0.25 (100 years)");
 }
 
 TEST_CASE("An ensemble has the remarks of its case, and those of a sample that are others", "[ensemble]") {

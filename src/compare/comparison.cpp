@@ -126,8 +126,9 @@ private:
         if (!(areas.simulated() > 0.0)) remark("nothing was ever deeper than {:.6g} m", run_.limit);
         const double length = length_of(result_.path);
         const double farthest = std::fmax(result_.surveyed_runout, result_.trace.runout);
-        if (std::isgreater(farthest, length * (1.0 + 1e-9)))  // there may be none
-            remark("the path ends {:.4g} m before the farther front and goes on straight there", farthest - length);
+        constexpr double round_off = 1e-9;
+        const std::string end = remark_on_end(length, farthest, round_off * length);
+        if (!end.empty()) result_.remarks.push_back(end);
         doubt_path();
         if (!result_.deposit) return;
         const DepositErrors& deposit = *result_.deposit;

@@ -1,5 +1,7 @@
 #include "compare/runout.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <queue>
@@ -188,6 +190,11 @@ double length_of(const Polyline& path) {
     double length = 0.0;
     for (std::size_t k = 0; k + 1 < path.size(); ++k) length += (path[k + 1] - path[k]).norm();
     return length;
+}
+
+std::string remark_on_end(double length, double farthest, double allowed) {
+    if (!std::isgreater(farthest, length + allowed)) return "";  // there may be none
+    return fmt::format("the path ends {:.4g} m before the farther front and goes on straight there", farthest - length);
 }
 
 }  // namespace frana

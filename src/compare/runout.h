@@ -1,6 +1,7 @@
 #pragma once
 // How far an extent reaches along a path.
 #include <optional>
+#include <string>
 
 #include "particles/outline_area.h"
 #include "terrain/raster.h"
@@ -28,5 +29,9 @@ double reach_along(const Polyline& path, const Rings& outline, double step);
 double farthest_from(const Vec2& start, const Rings& outline);
 
 double length_of(const Polyline& path);
+
+/// What to say of a path of that length where a front lies beyond its end, both along it [m]. "" where none does, or
+/// by no more than `allowed`.
+std::string remark_on_end(double length, double farthest, double allowed);
 
 }  // namespace frana

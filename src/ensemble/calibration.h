@@ -29,12 +29,13 @@ struct Optimum {
 struct Calibration {
     CalibrationPlan plan;
     Posterior posterior;
-    std::vector<EventFit> fits;           ///< by event
-    Index failed = 0, not_at_rest = 0;    ///< runs
-    double seconds = 0.0;                 ///< of all runs, on one thread each [s]
-    std::string first_failure = {};       ///< of the first run that failed, in the order of points: why
-    std::optional<Optimum> optimum = {};  ///< where one was searched
-    std::vector<std::string> files = {};  ///< written
+    std::vector<EventFit> fits;             ///< by event
+    Index failed = 0, not_at_rest = 0;      ///< runs
+    double seconds = 0.0;                   ///< of all runs, on one thread each [s]
+    std::string first_failure = {};         ///< of the first run that failed, in the order of points: why
+    std::optional<Optimum> optimum = {};    ///< where one was searched
+    std::vector<std::string> files = {};    ///< written
+    std::vector<std::string> remarks = {};  ///< on keys that vary and do not hold everywhere, by event
 };
 
 /// Values of a key at all points.

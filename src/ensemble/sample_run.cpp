@@ -182,12 +182,34 @@ void require_kept_thresholds(const EnsemblePlan& plan, double footprint_depth, c
                             plan.file.string(), table, threshold, footprint_depth));
 }
 
+std::vector<std::string> remarks_on_zones(const EnsemblePlan& plan, const CaseFile& file) {
+    const std::string bed = "material.bed.";
+    const auto varies = [&](const std::string& key) {
+        return std::any_of(plan.vary.begin(), plan.vary.end(), [&](const Vary& vary) { return vary.key == key; });
+    };
+    std::vector<std::string> remarks;
+    for (const Vary& vary : plan.vary) {
+        if (vary.key.rfind(bed, 0) != 0) continue;
+        std::string zones, keys;
+        for (Index k = 0; k < file.count("material.zone"); ++k) {
+            const std::string zone = fmt::format("material.zone.{}", k), key = zone + "." + vary.key.substr(bed.size());
+            if (!file.given(key) || varies(key)) continue;
+            zones += (zones.empty() ? "" : ", ") + zone, keys += (keys.empty() ? "" : ", ") + key;
+        }
+        if (!zones.empty())
+            remarks.push_back(fmt::format("{} holds outside of zones that set it ({}); vary {} as well if it is meant",
+                                          vary.key, zones, keys));
+    }
+    return remarks;
+}
+
 EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, const MeshReader& meshes) {
     const CaseFile file = CaseFile::read(plan.case_file, quiet({}));
     require_tables(plan, file);
     const Scene scene = build_scene(file, reader, meshes);
     EnsembleBase base;
     base.remarks = scene.log;
+    for (const std::string& remark : remarks_on_zones(plan, file)) base.remarks.push_back(remark);
     base.bed = scene.bed;
     base.whole = scene.wider ? scene.wider->grid : scene.bed.geometry;
     base.title = scene.title;

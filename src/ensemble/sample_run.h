@@ -12,6 +12,7 @@
 #include "observe/observer.h"
 #include "run/interrupt.h"
 #include "run/run_loop.h"
+#include "scene/case_file.h"
 #include "scene/toolbox.h"
 #include "terrain/sparse_rasters.h"
 
@@ -38,6 +39,9 @@ struct EnsembleBase {
 /// Nothing is stored below the footprint depth [m], so no threshold may lie there. Throws UserError, which names
 /// `table`.
 void require_kept_thresholds(const EnsemblePlan& plan, double footprint_depth, const std::string& table);
+
+/// A sentence for each key of the bed that varies, but not in zones of the case that set it: theirs wins there.
+std::vector<std::string> remarks_on_zones(const EnsemblePlan& plan, const CaseFile& file);
 
 /// Builds the case of the plan once. Throws UserError when it cannot run, or lacks the table of a key that varies.
 EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, const MeshReader& meshes);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "ensemble/sample_run.h"
 #include "run/calibrate/predict_folder.h"
 #include "run/calibrate/results.h"
 #include "run/calibrate/search.h"
@@ -90,6 +91,9 @@ std::size_t CalibrationRun::runs() const {
 Calibration CalibrationRun::carry_out(bool overwrite, const std::function<void(bool failed)>& done) const {
     Calibration found{plan_, Posterior(static_cast<Index>(plan_.vary.size()), plan_.seed),
                       std::vector<EventFit>(plan_.events.size())};
+    for (const SurveyedEvent& event : plan_.events)
+        for (const std::string& remark : remarks_on_zones(event.runs, CaseFile::read(event.runs.case_file)))
+            found.remarks.push_back(fmt::format("{}: {}", event.name, remark));
     const auto cut_off = [&] {
         return Interrupted(fmt::format("interrupted; what has run is in {}; --resume goes on", dir_.string()));
     };

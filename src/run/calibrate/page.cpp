@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 #include <tuple>
 
 #include "ensemble/predictions.h"
@@ -16,6 +18,8 @@ constexpr double kFewSamples = 50.0;   ///< below, quantiles are guesses
 constexpr double kFewForAnEnd = 20.0;  ///< points of equal weight, of which a twentieth of a range has one
 constexpr double kAtAnEnd = 2.0;       ///< a density at an end, over the prior's, that is worth a sentence
 constexpr double kTogether = 0.5;      ///< a correlation that is worth a sentence
+constexpr double kNoSpread = 5.0;      ///< points of equal weight below which a spread is that of single runs
+constexpr double kMissed = 3.0;        ///< standard deviations beyond which a best run is no fit
 
 std::string optimum_cell(const Calibration& c, std::size_t key) {
     return c.optimum ? fmt::format(" {:.4g} |", c.plan.vary[key].distribution.number(c.optimum->point[key])) : "";
@@ -87,6 +91,37 @@ std::string unsurveyed_section(const Calibration& c, std::size_t best) {
     return text;
 }
 
+/// How far off a kind of evidence is at the best point, or at the optimum where that is nearer [standard deviations].
+std::optional<double> sigmas_off(const Calibration& c, std::size_t best, std::size_t e, Evidence evidence) {
+    const auto kind = static_cast<std::size_t>(evidence);
+    std::optional<Misfit> least = c.fits[e].scores[best].misfits[kind];
+    if (c.optimum) {
+        const std::optional<Misfit>& found = c.optimum->scores[e].misfits[kind];
+        if (found && (!least || found->rms < least->rms)) least = found;
+    }
+    return least ? std::optional(least->rms / c.plan.events[e].errors.of(evidence)) : std::nullopt;
+}
+
+/// A sentence for each event that no run comes near to.
+std::string missed_section(const Calibration& c, std::size_t best) {
+    std::string text;
+    for (std::size_t e = 0; e < c.fits.size(); ++e) {
+        std::string off;
+        for (const Evidence evidence : c.plan.events[e].objective) {
+            const std::optional<double> sigmas = sigmas_off(c, best, e, evidence);
+            if (sigmas && *sigmas > kMissed)
+                off +=
+                    fmt::format("{}{:.2g} sigma off in {}", off.empty() ? "" : ", ", *sigmas, kind_of(evidence).word);
+        }
+        if (!off.empty())
+            text += fmt::format(
+                "{}: the best run is {}. The model with these keys does not reach the survey; their spread says "
+                "nothing of what is known.\n\n",
+                c.plan.events[e].name, off);
+    }
+    return text;
+}
+
 /// How far the best point's runs are off in all that counts, with what was expected of them.
 std::string misfits_section(const Calibration& c, std::size_t best) {
     std::string text = "| Event | what counts | best point | sigma | independent errors |\n|---|---|---:|---:|---:|\n";
@@ -100,7 +135,7 @@ std::string misfits_section(const Calibration& c, std::size_t best) {
                                 misfit->rms, event.errors.of(evidence), misfit->number);
         }
     }
-    return text + "\n" + unsurveyed_section(c, best);
+    return text + "\n" + missed_section(c, best) + unsurveyed_section(c, best);
 }
 
 }  // namespace
@@ -115,8 +150,11 @@ std::string calibration_section(const Calibration& c) {
     for (std::size_t k = 0; k < c.plan.vary.size(); ++k) {
         const std::vector<double> values = values_of(c, k);
         const Marginal of = marginal_of(values, w);
-        page += fmt::format("| `{}` | {:.4g} |{} {:.4g} | {:.2g} | {:.4g} | {:.4g} | {:.4g} |\n", c.plan.vary[k].key,
-                            values[best], optimum_cell(c, k), of.mean, of.sd, of.q05, of.q50, of.q95);
+        page +=
+            fmt::format("| `{}` | {:.4g} |{} {:.4g} |", c.plan.vary[k].key, values[best], optimum_cell(c, k), of.mean);
+        page += effective < kNoSpread
+                    ? " - | - | - | - |\n"
+                    : fmt::format(" {:.2g} | {:.4g} | {:.4g} | {:.4g} |\n", of.sd, of.q05, of.q50, of.q95);
     }
     page += pairs_section(c, effective) + ends_section(c, effective);
     page += optimum_section(c, c.posterior.log_likelihood()[best]);
@@ -126,7 +164,9 @@ std::string calibration_section(const Calibration& c) {
     if (c.not_at_rest > 0)
         page += fmt::format(" {} still moved at time.end, and were held against the surveys as they were then.",
                             c.not_at_rest);
+    if (effective < kNoSpread) page += " Fewer than 5 have no spread that means anything, so it is left out.";
     if (effective < kFewSamples) page += " Fewer than 50 are few: give more samples or rounds, or a larger sigma.";
+    for (const std::string& remark : c.remarks) page += fmt::format("\n\n{}.", remark);
     return page + "\n\n" + misfits_section(c, best) + predictions_section(c);
 }
 

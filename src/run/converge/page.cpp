@@ -135,6 +135,7 @@ std::string table_of(const ConvergenceStudy& study) {
     std::string text = head + "\n" + rule + "\n";
     for (const Quantity& quantity : quantities()) {
         if (is_of_bed(quantity) && !is_known(quantity, study.figures)) continue;
+        if (quantity.value == &CellFigures::runout && !study.along_path) continue;  // the next row has it
         text += fmt::format("| {} |", quantity.name);
         for (const CellFigures& run : study.figures) {
             const double value = run.*quantity.value * quantity.scale;
@@ -182,7 +183,10 @@ double largest_in(const ChartPanel& panel) {
 /// what a raster cannot tell would seem to be a change.
 ChartPanel runout_panel(const ConvergenceStudy& study) {
     using F = CellFigures;
-    ChartPanel panel = panel_of(study, "runout, change [m]", {{"along the path", &F::runout}, {"straight", &F::reach}});
+    std::vector<std::pair<const char*, double F::*>> runouts = {{"along the path", &F::runout},
+                                                                {"straight", &F::reach}};
+    if (!study.along_path) runouts.erase(runouts.begin());
+    ChartPanel panel = panel_of(study, "runout, change [m]", runouts);
     double most = 1.2 * study.figures.front().cell;
     for (Curve& curve : panel.curves) {
         const double finest = curve.y.back();
@@ -234,12 +238,13 @@ std::string page_of(const ConvergenceStudy& study, bool drawn) {
             " The finest cell is held against nothing: where its own error is large, agreement says little.\n\n"
             "The footprint is everything ever deeper than {0:g} m, the deposit's area what is deeper at the end; its "
             "volume is all that is left. What is taken of the bed is what is missing of it at the end. Footprints and "
-            "deposits are overlaid as their pixels lie. The runout is the "
-            "horizontal length along the steepest path on the finest grid, the same for all. Cells across: the flow's "
+            "deposits are overlaid as their pixels lie. The runout is the {1}. Cells across: the flow's "
             "median width, over its length. The order is that of the three finest cells; it is left out where values "
             "go to "
             "and fro, do not approach, or differ by less than the raster tells.\n\n",
-            study.footprint_depth);
+            study.footprint_depth,
+            study.along_path ? "horizontal length along the steepest path on the finest grid, the same for all"
+                             : "straight reach");
     text += "| Run | |\n|---|---|\n";
     for (const StudiedRun& run : study.runs) {
         const std::string folder = run.folder.lexically_relative(study.folder).generic_string();

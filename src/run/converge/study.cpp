@@ -122,6 +122,24 @@ void remark_on_ends(ConvergenceStudy& study) {
                             study.runs[k].cell));
 }
 
+/// Beyond the end of the path its last direction tells nothing of the flow's, so runouts there are not the flow's.
+void leave_short_path(ConvergenceStudy& study, const Path& path) {
+    std::vector<CellFigures*> all;
+    for (CellFigures& f : study.figures) all.push_back(&f);
+    for (Variation& varied : study.variations)
+        for (CellFigures& f : varied.figures) all.push_back(&f);
+    const double length = length_of(path.line);
+    const CellFigures* farthest = nullptr;
+    for (const CellFigures* f : all)
+        // Outlines of pixels are good to a cell.
+        if (std::isgreater(f->runout, length + f->cell) && (!farthest || f->runout > farthest->runout)) farthest = f;
+    if (!farthest) return;
+    study.remarks.push_back(remark_on_end(length, farthest->runout, farthest->cell) +
+                            "; so the straight reach counts as the runout");
+    study.along_path = false;
+    for (CellFigures* f : all) f->runout = f->reach;
+}
+
 /// A flow that runs up an opposite slope leaves the path that water would take.
 void remark_on_path(ConvergenceStudy& study) {
     constexpr double noticeable = 5.0;  // cells; outlines of pixels are good to one
@@ -150,11 +168,13 @@ void measure_runs(ConvergenceStudy& study, const Raster& bed) {
         study.ends.push_back(files.record["exit_reason"].get<std::string>());
         particles = particles || files.record.value("particle_steps", 1.0) > 0.0;
     }
-    for (Variation& varied : study.variations) {
+    for (Variation& varied : study.variations)
         for (const fs::path& folder : varied.folders)
             varied.figures.push_back(figures_of(read_run(folder), finest, path, study.footprint_depth));
+    study.along_path = !path.line.empty();
+    if (study.along_path) leave_short_path(study, path);
+    for (Variation& varied : study.variations)
         varied.sentence = spread_sentence(varied.key, varied.values, varied.figures, study.rule);
-    }
     const double across = study.figures.back().cells_across, cell = study.figures.back().cell;
     const std::string narrow = width_remark(across * cell, cell, particles);
     if (!narrow.empty()) study.remarks.push_back(fmt::format("on the finest cell of {:g} m {}", cell, narrow));

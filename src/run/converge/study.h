@@ -31,6 +31,7 @@ struct ConvergenceStudy {
     std::vector<CellFigures> figures;
     std::vector<std::string> ends;  ///< why each run ended
     std::vector<Variation> variations;
+    bool along_path = true;        ///< runouts are; else they are straight reaches, and a remark says why
     double footprint_depth = 0.1;  ///< [m]
     ConvergenceRule rule;
     Verdict verdict;

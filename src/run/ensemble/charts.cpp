@@ -97,7 +97,8 @@ void draw_convergence(const Charts& of) {
     figure.title = of.base.title;
     figure.x_label = "number of runs";
     std::vector<Curve> curves;
-    for (const double q : of.plan.quantiles) curves.push_back({fmt::format("{:g} of the runs at most", q), {}, {}});
+    for (const double q : of.plan.quantiles)
+        curves.push_back({fmt::format("{:g} % of the runs stay below", 100.0 * q), {}, {}});
     std::vector<double> sorted;
     for (std::size_t k = 0; k < of.runs.ended.size(); ++k) {
         sorted.insert(std::upper_bound(sorted.begin(), sorted.end(), of.runs.ended[k]->reach), of.runs.ended[k]->reach);

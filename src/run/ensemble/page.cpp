@@ -8,6 +8,7 @@
 #include "base/atomic_file.h"
 #include "base/text_file.h"
 #include "base/version.h"
+#include "ensemble/vary_words.h"
 #include "run/ensemble/outcomes.h"
 #include "run/ensemble/shard_store.h"
 
@@ -51,12 +52,18 @@ std::string sensitivity_section(const EnsemblePlan& plan, const EnsembleBase& ba
     const bool shares = plan.method == Method::saltelli;
     std::string page = fmt::format("\n\n## What the outcomes hang on\n\n| | key | {} | {} |\n|---|---|---:|---:|\n",
                                    shares ? "first order" : "mean effect", shares ? "total" : "its spread");
+    constexpr double shown = 0.005;  // a share nearer to 0 or 1 is as good as that
+    bool outside = false;
     for (const Outcome& outcome : outcomes_of(base)) {
         const auto found = sensitivity_of(outcome, plan, results);
-        for (std::size_t k = 0; k < found.size(); ++k)
+        for (std::size_t k = 0; k < found.size(); ++k) {
             page += fmt::format("| {} | `{}` | {:.3g} | {:.3g} |\n", outcome.name, plan.vary[k].key, found[k].first,
                                 found[k].total);
+            for (const double share : {found[k].first, found[k].total})
+                outside = outside || share < -shown || share > 1.0 + shown;
+        }
     }
+    if (shares && outside) page += "\nShares below 0 or above 1: too few samples.";
     return page;
 }
 
@@ -178,7 +185,7 @@ std::string gauges_note(const EnsembleBase& base, const WeightedRuns& runs) {
 std::string page_of(const EnsemblePlan& plan, const EnsembleBase& base, const EnsembleSummary& summary,
                     const WeightedRuns& runs, const std::vector<SampleResult>& results) {
     std::string page = fmt::format("# {}: many runs\n\n{}\n\n| | mean |", base.title, runs_sentence(summary));
-    for (const double q : plan.quantiles) page += fmt::format(" {:g} of the runs at most |", q);
+    for (const double q : plan.quantiles) page += fmt::format(" {:g} % of the runs stay below |", 100.0 * q);
     page += "\n|---|---:|";
     for (std::size_t k = 0; k < plan.quantiles.size(); ++k) page += "---:|";
     const auto shown = [](double number) { return std::isfinite(number) ? fmt::format("{:.5g}", number) : "never"; };
@@ -197,7 +204,12 @@ std::string page_of(const EnsemblePlan& plan, const EnsembleBase& base, const En
             "holds all).";
     page += fmt::format("\n\nMethod \"{}\", seed {}. What varies:\n\n", plan.method_name, plan.seed);
     for (const Vary& vary : plan.vary)
-        page += vary.prior.empty() ? fmt::format("- `{}`\n", vary.key) : fmt::format("- {}\n", vary.prior);
+        if (!vary.prior.empty())
+            page += fmt::format("- {}\n", vary.prior);
+        else if (plan.method == Method::table)
+            page += fmt::format("- `{}`: as the table of samples has it\n", vary.key);
+        else
+            page += fmt::format("- `{}`: {}\n", vary.key, words_of(vary));
     if (!base.remarks.empty()) page += "\nRemarks on the case:\n\n";
     for (const std::string& remark : base.remarks) page += fmt::format("- {}\n", remark);
     page += "\nFiles:\n\n";
