@@ -63,14 +63,9 @@ Scene scene_of(const EnsemblePlan& plan, const std::vector<std::string>& sets, c
 /// A key of a numbered table that the case does not have would be a table of its own in each run, of defaults else.
 void require_tables(const EnsemblePlan& plan, const CaseFile& file) {
     for (const Vary& vary : plan.vary) {
-        std::size_t dot = vary.key.find('.');
-        while (dot + 1 < vary.key.size() && std::isdigit(static_cast<unsigned char>(vary.key[dot + 1])) == 0) {
-            dot = vary.key.find('.', dot + 1);
-            if (dot == std::string::npos) break;
-        }
-        if (dot >= vary.key.size()) continue;
-        const std::string table = vary.key.substr(0, dot);
-        const Index number = std::stoll(vary.key.substr(dot + 1)), has = file.count(table);
+        const std::string table = repeated_table_of(vary.key);
+        if (table.empty() || std::isdigit(static_cast<unsigned char>(vary.key[table.size() + 1])) == 0) continue;
+        const Index number = std::stoll(vary.key.substr(table.size() + 1)), has = file.count(table);
         if (number >= has)
             throw UserError(fmt::format(
                 "{}: {}: found a varied key of a table that {} does not have; it has {} [[{}]], which count from 0; "
@@ -93,8 +88,8 @@ Way way_of(const Scene& scene, const GridGeometry& shown) {
     return way;
 }
 
-/// The base's, so that runs compare. A flow that begins more than a cell from there has its own, over the ground
-/// that it came to, as a comparison of that run has.
+/// The base's, so that runs compare. A flow that begins more than a cell from there has its own. That goes over the
+/// ground that it came to, as that of a comparison of the run.
 Way way_of(const Scene& scene, const EnsembleBase& base, const GridGeometry& shown) {
     const std::optional<Vec2> start = flow_start(scene);
     if (start && base.start && (*start - *base.start).norm() <= base.whole.cell) return {base.start, base.path};

@@ -41,9 +41,9 @@ struct Place {
 };
 
 /// Checks that map coordinates (and elevations) are metres. UserError with a gdalwarp or gdal_translate line
-/// that cures it. Causes are a geographic CRS, another unit than metre, and a vertical unit other than metre. So are a
-/// unit that is not known, one of the band that is not that of the CRS's heights, and
-/// lengths on the map that are not those on the ground. Remarks go to `log`.
+/// that cures it. Causes are a geographic CRS, another unit than metre, and a vertical unit other than metre. Others are a
+/// unit that is not known, and one of the band that is not that of the CRS's heights. So are lengths on the map that are
+/// not those on the ground. Remarks go to `log`.
 void require_metres(const Place& place, std::vector<std::string>& log);
 
 /// Checks that numbers of a raster on a terrain, such as depths, are metres. The band's unit counts before that of the

@@ -26,13 +26,6 @@ bool is_repeated(const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// "material.zone" of "material.zone.0.mu"; empty: no repeated table's key.
-std::string repeated_table_of(const std::string& key) {
-    for (const std::string& name : repeated_tables())
-        if (key.compare(0, name.size() + 1, name + ".") == 0) return name;
-    return {};
-}
-
 /// The table of a key without numbers, known or not; empty: it has none.
 std::string table_of(const std::string& key) {
     std::string repeated = repeated_table_of(key);

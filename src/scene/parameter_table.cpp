@@ -392,4 +392,10 @@ const std::vector<std::string>& repeated_tables() {
     return names;
 }
 
+std::string repeated_table_of(const std::string& key) {
+    for (const std::string& name : repeated_tables())
+        if (key.compare(0, name.size() + 1, name + ".") == 0) return name;
+    return {};
+}
+
 }  // namespace frana

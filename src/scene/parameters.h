@@ -79,6 +79,8 @@ const Parameter* find_parameter(const std::string& key);
 std::string without_numbers(const std::string& key);
 /// Tables that are written [[name]] and may come several times.
 const std::vector<std::string>& repeated_tables();
+/// That of them which a key is of, with a number or without: "material.zone" of "material.zone.0.mu"; empty: of none.
+std::string repeated_table_of(const std::string& key);
 /// The closest of `known` to `word` when it is close enough to be meant, otherwise empty.
 std::string closest(const std::string& word, const std::vector<std::string>& known);
 

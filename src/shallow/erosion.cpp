@@ -84,7 +84,7 @@ Double4 decelerations(const Law& law, const BedStateOf<Double4>& bed, Double4 sp
 /// 1/sqrt(1 + x) of four x >= 0, where nothing else depends on it: a series that is right to round-off for what a step
 /// gains.
 [[gnu::always_inline]] inline Double4 slowed_by_half(Double4 x) {
-    constexpr double kSeries = 2e-3;  // the next term is 3/16 of a billionth of a billionth
+    constexpr double kSeries = 2e-3;  // the next term is below 2e-17
     if (any(x > kSeries)) return sqrt(1.0 / (1.0 + x));
     constexpr double a[] = {-1.0 / 2, 3.0 / 8, -5.0 / 16, 35.0 / 128, -63.0 / 256};
     return 1.0 + x * (a[0] + x * (a[1] + x * (a[2] + x * (a[3] + x * a[4]))));
@@ -429,8 +429,10 @@ void Erosion::demand_of_tile(Flow& flow, Index n, const Stretch& stretch, const 
         const Double4 per_thickness = one / state.thickness, braked_share = dt / u;
         Double4 at_middle = one, gain = none, brake = none;  // the speed in the middle, over that at hand
         for (const bool middle : {true, false}) {
-            if (!middle) state.thickness = ground.below.thickness *= 1.0 + 0.5 * gain;
-            if (!middle) at_middle = kFeels ? sqrt(speeds_left(gain, brake * braked_share)) : slowed_by_half(gain);
+            if (!middle) {
+                state.thickness = ground.below.thickness *= 1.0 + 0.5 * gain;
+                at_middle = kFeels ? sqrt(speeds_left(gain, brake * braked_share)) : slowed_by_half(gain);
+            }
             state.speed = at_middle * ground.speed;
             if constexpr (kFeels) {
                 brake = decelerations(below, ground.below, at_middle * u);

@@ -43,8 +43,8 @@ public:
         share_rate_ = std::numeric_limits<double>::infinity();
         if (alone) waited_ = ahead_ = 0.0;
     }
-    /// Whether this step ends with an exchange. `adapts`: its points are sorted before they are deposited. `last`: the
-    /// state after it is wanted.
+    /// Whether this step ends with an exchange. `adapts`: its points are sorted before they are deposited. `last`: after
+    /// it the run ends, or something else enters.
     bool is_due(double dt, bool adapts, bool last) const;
     /// Points gain, the bed loses; after the gather and the sort, before the deposit. In one step of `dt`, for all that
     /// waited, and some that follow. `left`: until the run ends or something else enters [s].
@@ -87,9 +87,8 @@ private:
     struct SharedNode;
     /// Time that an exchange stands for [s].
     struct Stretch {
-        double whole;  ///< all of it
-        double
-            excess;  ///< for so long points were too fast without what they gain; less the time that they are too slow
+        double whole;   ///< all of it
+        double excess;  ///< in which points were too fast, without what they gain, less that in which they are too slow
     };
     Stretch next_stretch(double dt, double left);
     Erosion(const Scene& scene, const ErodibleBed& bed, Flow& flow);
@@ -217,8 +216,8 @@ private:
     double initial_mass_ = 0.0, mass_ = 0.0, deepest_ = 0.0;
     double waited_ = 0.0;  ///< since the last exchange [s]
     double ahead_ = 0.0;   ///< the last exchange stands for so much time that followed it [s]
-    double share_rate_ =
-        std::numeric_limits<double>::infinity();  ///< what it took of those that gained, of their mass [1/s]
+    /// What it took, of the mass of those that gained; none yet is beyond any [1/s].
+    double share_rate_ = std::numeric_limits<double>::infinity();
 };
 
 template <class Body>
