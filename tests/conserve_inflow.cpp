@@ -149,7 +149,7 @@ TEST_CASE("A closed basin fills with the volume of its tables, up to one level",
             double sum = 0.0;
             for (Index b = -1; b <= 1; ++b)
                 for (Index a = -1; a <= 1; ++a)
-                    sum += (2 - std::abs(a)) * (2 - std::abs(b)) * surface(i + a, j + b) / 16;
+                    sum += double((2 - std::abs(a)) * (2 - std::abs(b))) * surface(i + a, j + b) / 16;
             filtered = std::max(filtered, std::abs(sum - low));
         }
     INFO("level " << low << " m, off by " << most << " m, filtered " << filtered << " m, speed "

@@ -632,7 +632,7 @@ TEST_CASE("Momentum given to a film is known until the film stops", "[water][con
     s.grid = verify::cells_over(20, 20, 1.0);
     s.start = [](double x, double) { return WaterState{x > 15.0 ? 0.1 : 0.0}; };
     WaterFlow flow(s);
-    FreeWater lent{{}, TwoPhaseDrag({}), nullptr, nullptr, nullptr, nullptr, 0.0, {}, {}};
+    FreeWater lent{{}, TwoPhaseDrag({}), nullptr, nullptr, nullptr, nullptr, 0.0, {}, {}, {}};
     flow.lend(lent);
     const Index k = flow.body().grid.at(3, 4);
     lent.h[k] = 0.5 * lent.film, lent.qx[k] = 3.0 * lent.h[k];

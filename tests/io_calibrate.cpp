@@ -117,7 +117,7 @@ TEST_CASE("calibration finds the friction that a footprint was made with, on rea
     CHECK(draws == 256);
     CHECK(points.size() < 256);
     std::size_t end = 0;
-    for (int line = 0; line < 4; ++line) end = rows.find('\n', end) + 1;
+    for (int n = 0; n < 4; ++n) end = rows.find('\n', end) + 1;
     mudflow.write("few.csv", rows.substr(0, end));
     mudflow.write(
         "maps.toml",

@@ -40,7 +40,14 @@ struct ComparedFlow {
             return within(x, y, 50, 50, 100, 150) ? 0.0 : x < front ? x / 20.0 : Raster::nodata;
         });
     }
-    SimulatedRun run() const { return {&peak, &last, &arrival, &bed, 0.1}; }
+    SimulatedRun run() const {
+        SimulatedRun run;
+        run.peak_depth = &peak;
+        run.final_depth = &last;
+        run.arrival_time = &arrival;
+        run.bed = &bed;
+        return run;
+    }
 };
 
 }  // namespace

@@ -48,7 +48,7 @@ HazardTable own_table() {
     return table;
 }
 
-const std::string text =
+const std::string ensemble_case =
     "[ensemble]\ncase = \"case.toml\"\nmethod = \"grid\"\n"
     "[[ensemble.vary]]\nkey = \"release.0.depth\"\ndistribution = \"discrete\"\nvalues = [0.5, 1.5]\n";
 const std::string periods = "return_periods = [30, 300]\n";
@@ -138,24 +138,24 @@ TEST_CASE("A file gives a table of hazard, by a preset or its own, and what is w
         "[[ensemble.hazard.level]]\nname = \"deep\"\npeak_depth = 1.0\nclasses = [\"blue\", \"none\"]\n";
     const FreshFolder folder;
     write_text(folder.path() / "case.toml", "[terrain]\ndem = \"dem.asc\"\n");
-    write_text(folder.path() / "many.toml", text + periods + own);
+    write_text(folder.path() / "many.toml", ensemble_case + periods + own);
     const EnsemblePlan plan = read_ensemble(folder.path() / "many.toml");
     REQUIRE(plan.hazard);
     CHECK(plan.hazard->classes.at(0).colour == std::array<std::uint8_t, 3>{0, 0, 255});
     CHECK(plan.hazard->levels.at(0).classes == std::vector<std::size_t>{1, 0});
     CHECK(plan.points.at(0).return_period == 30.0);
     CHECK(plan.points.at(1).return_period == 300.0);
-    CHECK(complaint(text + periods + "[ensemble.hazard]\npreset = \"swiss_avalanche\"\n").empty());
-    CHECK(complaint(text + "[ensemble.hazard]\npreset = \"swiss_avalanche\"\nreturn_period = 100\n").empty());
-    CHECK_THAT(complaint(text + periods + "[ensemble.hazard]\npreset = \"french\"\n"),
+    CHECK(complaint(ensemble_case + periods + "[ensemble.hazard]\npreset = \"swiss_avalanche\"\n").empty());
+    CHECK(complaint(ensemble_case + "[ensemble.hazard]\npreset = \"swiss_avalanche\"\nreturn_period = 100\n").empty());
+    CHECK_THAT(complaint(ensemble_case + periods + "[ensemble.hazard]\npreset = \"french\"\n"),
                Contains("found \"french\"") && Contains("swiss_avalanche or swiss_debris_flow"));
-    CHECK_THAT(complaint(text + own), Contains("found neither it nor return periods of scenarios"));
-    CHECK_THAT(complaint(text + periods + own + "[ensemble.hazard.none]\n"), Contains("found a key that is not used"));
-    CHECK_THAT(complaint(text + "return_periods = [30]\n" + own), Contains("expected 2 numbers of years above 0"));
-    CHECK_THAT(complaint(text + periods + "[ensemble.hazard]\nyears = [30]\n"),
+    CHECK_THAT(complaint(ensemble_case + own), Contains("found neither it nor return periods of scenarios"));
+    CHECK_THAT(complaint(ensemble_case + periods + own + "[ensemble.hazard.none]\n"), Contains("found a key that is not used"));
+    CHECK_THAT(complaint(ensemble_case + "return_periods = [30]\n" + own), Contains("expected 2 numbers of years above 0"));
+    CHECK_THAT(complaint(ensemble_case + periods + "[ensemble.hazard]\nyears = [30]\n"),
                Contains("found no [[ensemble.hazard.class]]"));
     const auto with = [&](const std::string& from, const std::string& to) {
-        std::string changed = text + periods + own;
+        std::string changed = ensemble_case + periods + own;
         return complaint(changed.replace(changed.find(from), from.size(), to));
     };
     CHECK_THAT(with("#0000ff", "blue"), Contains("expected red, green and blue"));
@@ -167,10 +167,10 @@ TEST_CASE("A file gives a table of hazard, by a preset or its own, and what is w
     CHECK_THAT(with("#0000ff", "#0x12ab"), Contains("expected red, green and blue"));
     const std::string shallower =
         "[[ensemble.hazard.level]]\npeak_depth = 0.5\nclasses = [\"blue\", \"none\"]\n[ensemble.hazard.x]\n";
-    CHECK_THAT(complaint(text + periods + own + shallower), Contains("found 0.5, less than 1 of \"deep\""));
+    CHECK_THAT(complaint(ensemble_case + periods + own + shallower), Contains("found 0.5, less than 1 of \"deep\""));
     CHECK_THAT(
         complaint("[ensemble]\ncase = \"case.toml\"\nmethod = \"grid\"\nfields = [\"peak_depth\"]\n" +
-                  text.substr(text.find("[[")) + periods + "[ensemble.hazard]\npreset = \"swiss_debris_flow\"\n"),
+                  ensemble_case.substr(ensemble_case.find("[[")) + periods + "[ensemble.hazard]\npreset = \"swiss_debris_flow\"\n"),
         Contains("expected peak_speed among ensemble.fields"));
 }
 

@@ -76,7 +76,7 @@ TEST_CASE("A 3D stage asks for the memory of its nodes, those of its window abov
     CHECK(with - asked() >= 10.0 * rows * map);
     CHECK(with - asked() <= 10.0 * double(scene.bed.geometry.ny) * 2.5 * map);
     scene.solid.reset();
-    CHECK(with - asked() >= size * 3.0 * sizeof(double) + double((window[2] - window[0]) * rows) * map);
+    CHECK(with - asked() >= size * 3.0 * sizeof(double) + double(window[2] - window[0]) * rows * map);
 }
 
 // What the map had on all of the terrain took five times as long to look at as the points themselves.

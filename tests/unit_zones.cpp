@@ -156,7 +156,6 @@ TEST_CASE("A layer holds where the friction of its zone holds it, asleep or not,
 
 TEST_CASE("Four nodes with numbers of their own leave what each leaves by itself, to the last bit", "[zones][law]") {
     const auto check = [](const auto& of) {
-        using Law = typename std::decay_t<decltype(of)>::value_type;
         const auto together = laws::side_by_side(of[0], of[1], of[2], of[3]);
         // From steps that friction hardly feels to such that stop, and to those beyond the series and the fraction.
         for (const double dt : {1e-4, 0.05, 0.7, 9.0})

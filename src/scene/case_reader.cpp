@@ -69,7 +69,7 @@ std::string meant(const std::string& key) {
     const std::string name = table.empty() ? key : key.substr(table.size() + 1);
     const std::vector<std::string> here = names_in(table);
     for (const std::string& neighbour : {closest(name, here), same_thing(name, here)})
-        if (!neighbour.empty()) return table + "." + neighbour;
+        if (!neighbour.empty()) return (table + ".").append(neighbour);
     std::vector<std::string> all = table_names();
     for (const Parameter& parameter : parameters()) {
         if (parameter.name() == name) return parameter.key;
