@@ -198,7 +198,7 @@ TEST_CASE("Drag slows columns next to a wall as it slows those in the open", "[m
         const StructuredBody& body = columns.body();
         const std::size_t nodes = static_cast<std::size_t>(body.grid.size());
         std::vector<double> h(nodes, 1.2), qx(nodes, 0.0), qy(nodes, 0.0), bed(nodes, 0.0);
-        columns.meet({by, law, h.data(), qx.data(), qy.data(), bed.data(), 1e-3, {}, {}});
+        columns.meet({by, law, h.data(), qx.data(), qy.data(), bed.data(), 1e-3, {}, {}, {}});
         columns.advance(0.01);
         // With grains the first grid update is half a step.
         const double velocity_dt = columns.status().dt * (share < 1.0 ? 0.5 : 1.0);
@@ -326,7 +326,8 @@ TEST_CASE("Two phases have the same bits for any number of threads", "[mixture][
 TEST_CASE("Water bears columns by the pressure in their pores, in proportion until they are full", "[mixture]") {
     WaterExchange exchange;
     exchange.void_ratio = 0.5, exchange.pore_pressure = 0.8;
-    const FreeWater water{exchange, TwoPhaseDrag(exchange.material), nullptr, nullptr, nullptr, nullptr, 0.0, {}, {}};
+    const FreeWater water{exchange, TwoPhaseDrag(exchange.material), nullptr, nullptr, nullptr, nullptr, 0.0, {}, {},
+                          {}};
     CHECK(water.support(2000.0, 1.0, 0.25) == Approx(0.5 * 0.8 * 0.5).epsilon(1e-15));
     CHECK(water.support(2000.0, 1.0, 0.5) == Approx(0.8 * 0.5).epsilon(1e-15));
     CHECK(water.support(2000.0, 1.0, 50.0) == Approx(0.8 * 0.5).epsilon(1e-15));

@@ -202,7 +202,7 @@ TEST_CASE("Where a flow sets off what stands in the bed, the surface stays and t
     double most = 0.0;
     for (Index y = 12; y < 33; ++y)
         for (Index x = 45; x < 66; ++x)
-            if (std::hypot(x - 55.1, y - 22.6) < 6.0)
+            if (std::hypot(double(x) - 55.1, double(y) - 22.6) < 6.0)
                 most = std::max(most, std::abs(surface_at(run, x, y) - surface_at(without, x, y)));
     CHECK(most < 0.25 * curved);
     CHECK(run.status().max_depth > 1.0);
@@ -340,7 +340,8 @@ TEST_CASE("A bed that fell stays so where the terrain grows, and next to barrier
     const auto row = [&](Index x) { return (22 + kAround) * before.grid.nx + x + kAround; };
     Index top_node = row(54);
     for (Index x = 54; x <= 58; ++x)  // what stands out most of the slope
-        if (z0[row(x)] - 0.43 * (56 - x) > z0[top_node] - 0.43 * (56 - (top_node - row(0)))) top_node = row(x);
+        if (z0[row(x)] - 0.43 * double(56 - x) > z0[top_node] - 0.43 * double(56 - (top_node - row(0))))
+            top_node = row(x);
     run_to(run, 9.0);
     CHECK(run.extras().late[0].entered.has_value());
     CHECK(std::abs(budget(start, run.status()).mass_error) < 1e-13);

@@ -150,8 +150,10 @@ TEST_CASE("A file gives a table of hazard, by a preset or its own, and what is w
     CHECK_THAT(complaint(ensemble_case + periods + "[ensemble.hazard]\npreset = \"french\"\n"),
                Contains("found \"french\"") && Contains("swiss_avalanche or swiss_debris_flow"));
     CHECK_THAT(complaint(ensemble_case + own), Contains("found neither it nor return periods of scenarios"));
-    CHECK_THAT(complaint(ensemble_case + periods + own + "[ensemble.hazard.none]\n"), Contains("found a key that is not used"));
-    CHECK_THAT(complaint(ensemble_case + "return_periods = [30]\n" + own), Contains("expected 2 numbers of years above 0"));
+    CHECK_THAT(complaint(ensemble_case + periods + own + "[ensemble.hazard.none]\n"),
+               Contains("found a key that is not used"));
+    CHECK_THAT(complaint(ensemble_case + "return_periods = [30]\n" + own),
+               Contains("expected 2 numbers of years above 0"));
     CHECK_THAT(complaint(ensemble_case + periods + "[ensemble.hazard]\nyears = [30]\n"),
                Contains("found no [[ensemble.hazard.class]]"));
     const auto with = [&](const std::string& from, const std::string& to) {
@@ -168,10 +170,10 @@ TEST_CASE("A file gives a table of hazard, by a preset or its own, and what is w
     const std::string shallower =
         "[[ensemble.hazard.level]]\npeak_depth = 0.5\nclasses = [\"blue\", \"none\"]\n[ensemble.hazard.x]\n";
     CHECK_THAT(complaint(ensemble_case + periods + own + shallower), Contains("found 0.5, less than 1 of \"deep\""));
-    CHECK_THAT(
-        complaint("[ensemble]\ncase = \"case.toml\"\nmethod = \"grid\"\nfields = [\"peak_depth\"]\n" +
-                  ensemble_case.substr(ensemble_case.find("[[")) + periods + "[ensemble.hazard]\npreset = \"swiss_debris_flow\"\n"),
-        Contains("expected peak_speed among ensemble.fields"));
+    CHECK_THAT(complaint("[ensemble]\ncase = \"case.toml\"\nmethod = \"grid\"\nfields = [\"peak_depth\"]\n" +
+                         ensemble_case.substr(ensemble_case.find("[[")) + periods +
+                         "[ensemble.hazard]\npreset = \"swiss_debris_flow\"\n"),
+               Contains("expected peak_speed among ensemble.fields"));
 }
 
 TEST_CASE("Runs without an answer bound the classes from below and above", "[ensemble][hazard]") {
