@@ -180,6 +180,21 @@ TEST_CASE("Rasters of a large terrain show where the flow was, on the terrain's 
     CHECK(on.code == 0);
 }
 
+TEST_CASE("The growth that check tells is that of the path over all of the terrain", "[terrain][erosion]") {
+    // Held in part, and held in whole, on the same window: 2 km down from the release, and 1.2 km of it loose.
+    const std::string check =
+        "check fields.toml --set terrain.window=[614000,5213000,618000,5216500] --set erodible.growth=0.01";
+    const auto remark = [&](const std::string& arguments) {
+        const Outcome told = call_frana(large_terrain().path(), arguments);
+        INFO(told.err);
+        REQUIRE(told.code == 0);
+        const std::size_t from = told.out.find("remark      erodible.growth: found ");
+        REQUIRE(from != std::string::npos);
+        return told.out.substr(from, told.out.find('\n', from) - from);
+    };
+    CHECK(remark(check) == remark(check + " --set output.extent=terrain"));
+}
+
 TEST_CASE("A terrain that does not fit into memory is refused by all commands before it is read", "[terrain]") {
     const FreshFolder folder;
     RasterSpec spec;
