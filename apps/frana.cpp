@@ -230,17 +230,24 @@ void add_figures(CLI::App& app, FiguresOptions& options, std::string& size, Acti
 void add_compare(CLI::App& app, CompareOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("compare", "hold a finished run against a survey");
     command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();
-    command->add_option("--survey", options.survey, "surveyed extent: polygons, or a raster that is above 0 there")
-        ->required();
-    command->add_option("--deposit", options.deposit, "raster of the surveyed deposit's thickness [m]");
-    CLI::Option* change = command->add_option("--bed-change", options.bed_change,
-                                              "raster of the difference of two surveys, after minus before [m]");
+    CLI::Option* survey =
+        command->add_option("--survey", options.survey, "surveyed extent: polygons, or a raster that is above 0 there");
+    command->add_option("--deposit", options.deposit, "raster of the surveyed deposit's thickness [m]")->needs(survey);
+    CLI::Option* change =
+        command->add_option("--bed-change", options.bed_change,
+                            "raster of the difference of two surveys, after minus before [m]; without "
+                            "--survey the changes of the bed are compared alone");
     numeric(command->add_option("--bed-change-noise", options.bed_change_noise,
                                 "change within the noise of both surveys, which counts as none [m]; default 0.1"),
             kFromZero)
         ->needs(change);
     command->add_option("--path", options.path, "line for the runout; default the steepest from the release");
     command->add_option("--json", options.json, "file of the scores; default RUN_DIR/compare.json");
+    command->footer(
+        "Give --survey, --bed-change, or both. A case with a [survey] of its own was compared at the end of its run, "
+        "in "
+        "report.md. What other files give is named after them and stands beside it: "
+        "compare_with_NAME.json, compare_with_NAME.md, figures/compare_with_NAME.png.");
     command->callback(
         [&] { action = [&] { return adding_to(options.run_dir, [&] { return compare_command(options); }); }; });
 }
@@ -250,8 +257,8 @@ void add_states(CLI::App& app, StatesOptions& options, Action& action) {
         app.add_subcommand("states", "write the ParaView states of a run, or an ensemble, again, after it was moved");
     command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();
     command->add_option("NAME", options.names,
-                        "states that must be there: overview, stress, profiles, survey, impact, structure, budgets, "
-                        "probability");
+                        "states that must be there: overview, stress, profiles, survey, impact, structure, phases, "
+                        "budgets, probability");
     command->footer(
         "File > Load State opens one in ParaView. pvstates/frana_paraview.py (share/frana where frana is installed) is "
         "a "

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <type_traits>
 
+#include "base/free_memory.h"
 #include "compare/expected_width.h"
 #include "compare/flow_width.h"
 #include "compare/runout.h"
@@ -14,10 +15,12 @@
 #include "io/gdal_reader.h"
 #include "run/folder/run_insitu.h"
 #include "run/folder/run_page.h"
+#include "scene/bed_over.h"
 #include "scene/flow_start.h"
 #include "scene/inflow_facts.h"
 #include "scene/memory_need.h"
 #include "shallow/feed.h"
+#include "terrain/part_of.h"
 #include "vtk_io/barrier_mesh.h"
 
 namespace frana {
@@ -212,7 +215,22 @@ double loose_way(const Polyline& path, const Raster& loose) {
     return way;
 }
 
-/// Growth of a flow that takes up its bed in proportion to its way, on the steepest path over loose material.
+/// The same of the steepest path from a place to the edge of the terrain. Where memory has no room for that, it is the
+/// part that the scene holds.
+double loose_way(const Scene& scene, const Vec2& start) {
+    constexpr double kBytesPerNode = 40.0;  // elevations, and the queue of a search from the edge inwards
+    const WiderTerrain* wider = scene.wider.get();
+    if (wider == nullptr || kBytesPerNode * static_cast<double>(wider->grid.size()) > free_memory())
+        return loose_way(steepest_path(scene.bed, start), scene.erodible->depth);
+    const Raster bed = bed_over(scene.bed, wider, wider->grid);
+    const Polyline path = steepest_path(bed, start);
+    if (path.empty() || !wider->fields) return loose_way(path, scene.erodible->depth);
+    const NodeBox along = common(cells_of(path, wider->grid), NodeBox::all(wider->grid));
+    return loose_way(path, wider->fields(part_of(bed, along)).loose);
+}
+
+/// Growth of a flow that takes up its bed in proportion to its way, on the steepest path over loose material, up to the
+/// terrain's edge.
 /// There is a remark where that is more than a hundredfold.
 std::string growth_text(const BuiltScene& built) {
     constexpr double kHundredfold = 100.0;
@@ -220,8 +238,7 @@ std::string growth_text(const BuiltScene& built) {
     const auto* law = scene.erodible ? std::get_if<erosion::Growth>(&scene.erodible->law) : nullptr;
     const std::optional<Vec2> start = law ? flow_start(scene) : std::nullopt;
     if (!start) return "";
-    const Polyline path = steepest_path(scene.bed, *start);
-    const double way = loose_way(path, scene.erodible->depth);
+    const double way = loose_way(scene, *start);
     double volume = 0.0;
     for (const ReleaseSummary& release : built.releases) volume += release.report.volume;
     for (const Inflow& inflow : scene.inflows) volume += facts_of(inflow, scene.gravity).volume;

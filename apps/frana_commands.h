@@ -71,13 +71,13 @@ struct FiguresOptions {
     int height = 1200;           ///< [pixels]
 };
 
-/// `frana compare RUN_DIR --survey FOOTPRINT [--deposit RASTER] [--bed-change RASTER] [--bed-change-noise M] [--path LINE]
-/// [--json FILE]`
+/// `frana compare RUN_DIR [--survey FOOTPRINT] [--deposit RASTER] [--bed-change RASTER] [--bed-change-noise M]
+/// [--path LINE] [--json FILE]`
 struct CompareOptions {
-    std::filesystem::path run_dir, survey;
-    std::filesystem::path deposit, path, bed_change;  ///< or empty
-    double bed_change_noise = 0.1;                    ///< [m]
-    std::filesystem::path json;                       ///< empty: RUN_DIR/compare.json
+    std::filesystem::path run_dir;
+    std::filesystem::path survey, deposit, path, bed_change;  ///< or empty; one of `survey` and `bed_change` is given
+    double bed_change_noise = 0.1;                            ///< [m]
+    std::filesystem::path json;  ///< empty: RUN_DIR/compare.json, or named after the survey
 };
 
 /// `frana states RUN_DIR [NAME...]`

@@ -15,6 +15,7 @@
 #include "run/folder/run_charts.h"
 #include "run/folder/run_folder.h"
 #include "run/folder/states.h"
+#include "scene/remarks.h"
 #include "vtk_io/survey_vtp.h"
 
 namespace frana {
@@ -64,64 +65,132 @@ std::optional<Raster> released_later(const CompareOptions& options, const Figure
 void require_other_json(const CompareOptions& options) {
     std::vector<fs::path> inputs = {options.survey, options.deposit, options.path, options.bed_change};
     const std::vector<fs::path> of_run = product_files(options.run_dir);
-    const fs::path own = options.run_dir / "compare.json";
+    const auto is_scores = [&](const fs::path& file) {
+        return file.parent_path() == options.run_dir && file.extension() == ".json" &&
+               file.filename().string().rfind("compare", 0) == 0;
+    };
     std::copy_if(of_run.begin(), of_run.end(), std::back_inserter(inputs),
-                 [&](const fs::path& file) { return file != own; });
+                 [&](const fs::path& file) { return !is_scores(file); });
     require_no_input("--json", options.json, inputs);
 }
 
-/// compare.md: the comparison on one page, with its picture.
-std::string page(const FigureSource& source, const Comparison& comparison, const std::vector<DrawnFigure>& figures) {
+SurveyFiles files_of(const CompareOptions& options) {
+    return {options.survey, options.deposit, options.path, options.bed_change, options.bed_change_noise};
+}
+
+/// The survey that the run was compared with at its end. Nothing without one.
+SurveyFiles files_of_case(const fs::path& run_dir) {
+    try {
+        return survey_files(case_of_run(run_dir));
+    } catch (const UserError&) {
+        return {};  // a folder without resolved.toml
+    }
+}
+
+bool same_file(const fs::path& a, const fs::path& b) {
+    std::error_code gone;
+    return a == b || fs::weakly_canonical(a, gone) == fs::weakly_canonical(b, gone);
+}
+
+/// How a comparison stands to that of the run's own report: in names of files, and in words.
+struct Standing {
+    bool apart = false;            ///< the case has another survey
+    std::string name = "compare";  ///< of all files
+    std::string words;             ///< empty: the case has no survey
+};
+
+Standing standing_of(const CompareOptions& options) {
+    const SurveyFiles own = files_of_case(options.run_dir), now = files_of(options);
+    if (own.footprint.empty()) return {};
+    const bool same = same_file(own.footprint, now.footprint) && same_file(own.deposit, now.deposit) &&
+                      same_file(own.path, now.path) && same_file(own.bed_change, now.bed_change) &&
+                      (now.bed_change.empty() || own.bed_change_noise == now.bed_change_noise);
+    if (same) return {false, "compare", "These are the survey files of the case, as in `report.md`."};
+    std::string name = (now.footprint.empty() ? now.bed_change : now.footprint).stem().string();
+    std::replace(name.begin(), name.end(), ' ', '_');  // links of Markdown end at a space
+    return {
+        true, "compare_with_" + name,
+        fmt::format("The case has other survey files (`{}`). `report.md`, `compare.json`, `figures/compare.png` and "
+                    "the ParaView state `survey` are of those, and stay.",
+                    own.footprint.filename().string())};
+}
+
+void require_survey(const CompareOptions& options) {
+    if (options.survey.empty() && options.bed_change.empty())
+        throw UserError(
+            "frana compare: found no survey; expected --survey, --bed-change, or both; give the surveyed extent or the "
+            "difference of two surveys");
+}
+
+/// The comparison on one page, with its picture.
+std::string page(const FigureSource& source, const Comparison& comparison, const Standing& standing,
+                 const std::vector<DrawnFigure>& figures) {
     std::string text = fmt::format("# {}\n\n", source.title) + comparison_section(comparison);
+    if (!standing.words.empty()) text += standing.words + "\n\n";
     for (const DrawnFigure& figure : figures)
         text += fmt::format("![{0}]({1})\n\n*{0}*\n\n", figure.caption, figure.path);
     return text + source.footer + "\n";
 }
 
+/// For ParaView, where the run has files for it. Returns what was written.
+std::vector<fs::path> leave_for_paraview(const FigureSource& source, const Comparison& comparison) {
+    const fs::path& dir = source.run_dir;
+    if (!source.survey || source.bed.values.empty() || !fs::exists(dir / "grid.pvd")) return {};
+    write_survey(dir, source.bed, *ever_covered(source.rasters), comparison.limit, rings_of(*source.survey));
+    write_states(dir, source.title);
+    return {dir / "survey_areas.vtp", dir / "survey_outlines.vtp", dir / "states"};
+}
+
 }  // namespace
 
 RunAndSurvey read_run_and_survey(const CompareOptions& options) {
+    require_survey(options);
     RunAndSurvey read;
     FigureSource& source = read.run = read_finished_run(options.run_dir, read.warnings);
     require_rasters(options.run_dir, source.rasters);
     require_erodible(options, source.rasters);
     const Survey survey =
-        read_survey_files({options.survey, options.deposit, options.path, options.bed_change, options.bed_change_noise},
-                          find_product(source.rasters, "peak_depth")->raster, read.warnings);
+        read_survey_files(files_of(options), find_product(source.rasters, "peak_depth")->raster, read.warnings);
     const std::optional<Raster> later = released_later(options, source, read.warnings);
     read.comparison = compare_rasters(source.rasters, source.bed.values.empty() ? nullptr : &source.bed,
                                       source.footprint_depth, survey, source.start, later ? &*later : nullptr);
-    source.survey = survey.footprint;
+    if (read.comparison.extents) source.survey = survey.footprint;
     source.runout_path = read.comparison.path;
     return read;
 }
 
 int compare_command(const CompareOptions& options) {
+    require_survey(options);
     if (!options.json.empty()) require_other_json(options);
     RunAndSurvey read = read_run_and_survey(options);
     FigureSource& source = read.run;
     const Comparison& comparison = read.comparison;
-    std::vector<std::string>& warnings = read.warnings;
-    const bool bed_known = !source.bed.values.empty();
+    const Standing standing = standing_of(options);
+    const fs::path& dir = options.run_dir;
+    source.comparison = standing.name;
 
-    const fs::path json = options.json.empty() ? options.run_dir / "compare.json" : options.json;
-    write_scores(options.run_dir, json, comparison);  // before the picture: scores are worth more
-    Gallery gallery(options.run_dir);
-    if (bed_known) add_overlay(source, gallery);
-    if (!comparison.bed_change_steps.empty()) add_bed_change(source, gallery);
-    const std::vector<DrawnFigure> figures = gallery.draw(threads_for_figures(), warnings);
-    write_text(options.run_dir / "compare.md", page(source, comparison, figures));
-
-    if (bed_known && fs::exists(options.run_dir / "grid.pvd")) {
-        write_survey(options.run_dir, source.bed, *ever_covered(source.rasters), comparison.limit,
-                     rings_of(*source.survey));
-        write_states(options.run_dir, source.title);
+    std::vector<fs::path> written = {options.json.empty() ? dir / (standing.name + ".json") : options.json};
+    write_scores(dir, written.front(), comparison, standing.name);  // before the picture: scores are worth more
+    if (fs::exists(dir / "resolved.toml")) read_places(source, read.warnings);
+    Gallery gallery(dir);
+    add_overlay(source, gallery);
+    if (!comparison.bed_change_steps.empty()) {
+        written.push_back(dir / (standing.name + "_bed_change.csv"));
+        add_bed_change(source, gallery);
     }
+    const std::vector<DrawnFigure> figures = gallery.draw(threads_for_figures(), read.warnings);
+    written.insert(written.begin() + 1, dir / (standing.name + ".md"));
+    write_text(written[1], page(source, comparison, standing, figures));
+    for (const DrawnFigure& figure : figures) written.push_back(dir / figure.path);
+    if (!standing.apart)
+        for (const fs::path& file : leave_for_paraview(source, comparison)) written.push_back(file);
 
-    std::cout << comparison_section(comparison) << json.string() << '\n'
-              << (options.run_dir / "compare.md").string() << '\n';
-    for (const DrawnFigure& figure : figures) std::cout << (options.run_dir / figure.path).string() << '\n';
-    for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
+    std::cout << comparison_section(comparison);
+    if (!standing.words.empty()) std::cout << standing.words << "\n\n";
+    std::cout << "Written:\n";
+    for (const fs::path& file : written) std::cout << file.string() << '\n';
+    join_remarks_on_coordinates(read.warnings);
+    for (const std::string& warning : read.warnings) std::cerr << "warning: " << warning << '\n';
     return 0;
 }
 

@@ -13,6 +13,7 @@
 #include "frana_commands.h"
 #include "frana_figures.h"
 #include "io/gdal_reader.h"
+#include "run/folder/comparison.h"
 #include "run/folder/cutoff.h"
 #include "run/folder/record_file.h"
 #include "run/folder/run_3d.h"
@@ -23,6 +24,7 @@
 #include "run/web/web_page.h"
 #include "scene/barriers_of_case.h"
 #include "scene/lines_of_case.h"
+#include "scene/remarks.h"
 #include "terrain/part_of.h"
 #include "vtk_io/reader.h"
 
@@ -97,10 +99,37 @@ void read_section(const CaseFile& run_case, Index i, FigureSource& source, std::
     source.sections.push_back(std::move(section));
 }
 
-/// Lines, points and the survey, from the case in full. Files that it names may have gone; a survey that has
-/// is left out.
-void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::string>& warnings) {
-    const CaseFile run_case = case_of_run(run_dir);
+/// The path in the overlay, as the run's comparison chose it. A line that has gone is a warning.
+void read_runout_path(const CaseFile& run_case, FigureSource& source, std::vector<std::string>& warnings) {
+    const ProductRaster* peak = find_product(source.rasters, "peak_depth");
+    if (peak == nullptr) return;
+    try {
+        std::vector<std::string> said_by_the_run;
+        SurveyFiles files;
+        files.path = survey_files(run_case).path;
+        Survey survey = read_survey_files(files, peak->raster, said_by_the_run);
+        survey.footprint = *source.survey;
+        source.runout_path =
+            compare_rasters(source.rasters, &source.bed, source.footprint_depth, survey, source.start).path;
+    } catch (const UserError& error) {
+        warnings.push_back(fmt::format("the runout path is not shown: {}", error.what()));
+    }
+}
+
+/// A survey that has gone is left out.
+void read_survey_of_case(const CaseFile& run_case, FigureSource& source, std::vector<std::string>& warnings) {
+    if (!run_case.has("survey.footprint") || source.bed.values.empty()) return;
+    const fs::path survey = run_case.path("survey.footprint");
+    if (!fs::exists(survey)) {
+        warnings.push_back(fmt::format("{}: the survey is not there any more and is left out", survey.string()));
+        return;
+    }
+    source.survey = GdalReader().read_survey(survey, source.bed.geometry.pixel_extent(), source.bed.crs_wkt, warnings);
+    read_runout_path(run_case, source, warnings);
+}
+
+/// Lines and points from the case in full. Files that it names may have gone.
+void read_lines(const CaseFile& run_case, FigureSource& source, std::vector<std::string>& warnings) {
     for (Index i = 0; i < run_case.count("profile"); ++i) {
         const std::string table = fmt::format("profile.{}.", i);
         source.profiles.push_back({run_case.word(table + "name"), run_case.points(table + "line")});
@@ -114,20 +143,12 @@ void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::s
     source.inflows = inflow_places(run_case, source.bed.crs_wkt, warnings);
     for (Index i = 0; i < run_case.count("stage"); ++i)
         source.in_3d |= run_case.word(fmt::format("stage.{}.model", i)) == "solid_flow";
-    if (!run_case.has("survey.footprint") || source.bed.values.empty()) return;
-    const fs::path survey = run_case.path("survey.footprint");
-    if (!fs::exists(survey)) {
-        warnings.push_back(fmt::format("{}: the survey is not there any more and is left out", survey.string()));
-        return;
-    }
-    source.survey = GdalReader().read_survey(survey, source.bed.geometry.pixel_extent(), source.bed.crs_wkt, warnings);
 }
 
 /// An outline that has gone is left out, and all barriers with it.
-void read_barriers(FigureSource& source, std::vector<std::string>& warnings) {
+void read_barriers(const CaseFile& run_case, FigureSource& source, std::vector<std::string>& warnings) {
     if (source.bed.values.empty()) return;
     try {
-        const CaseFile run_case = case_of_run(source.run_dir);
         std::vector<std::string> said_by_the_run;
         source.barriers = barriers_of_case(run_case, GdalReader(), source.bed, said_by_the_run);
         for (const Barrier& barrier : source.barriers) source.barrier_tops.push_back({barrier.top, barrier.height});
@@ -267,6 +288,12 @@ FigureSource read_finished_run(const fs::path& run_dir, std::vector<std::string>
     return source;
 }
 
+void read_places(FigureSource& source, std::vector<std::string>& warnings) {
+    const CaseFile run_case = case_of_run(source.run_dir);
+    read_lines(run_case, source, warnings);
+    read_barriers(run_case, source, warnings);
+}
+
 int figures_command(const FiguresOptions& options) {
     const auto interrupted = [&] {
         std::cerr << fmt::format(
@@ -286,8 +313,8 @@ int figures_command(const FiguresOptions& options) {
     source.height = options.height;
     source.time = options.time;
     if (source.bed.values.empty()) source.rasters.clear();
-    read_case(options.run_dir, source, warnings);
-    read_barriers(source, warnings);
+    read_places(source, warnings);
+    read_survey_of_case(case_of_run(options.run_dir), source, warnings);
     Gallery gallery(options.run_dir);
     std::list<ProductRaster> of_the_moment;
     FlowFrames frames(source.footprint_depth);
@@ -307,6 +334,7 @@ int figures_command(const FiguresOptions& options) {
     }
     const std::vector<DrawnFigure> figures = gallery.draw(threads_for_figures(), warnings);
     for (const DrawnFigure& figure : figures) std::cout << (options.run_dir / figure.path).string() << '\n';
+    join_remarks_on_coordinates(warnings);
     for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
     if (!Cutoff::asked()) return 0;
     interrupted();

@@ -23,4 +23,8 @@ std::vector<LateEntry> late_of_run(const std::filesystem::path& run_dir);
 /// `warnings` says so. Profiles, gauges and the survey are left out. UserError when the folder holds no finished run.
 FigureSource read_finished_run(const std::filesystem::path& run_dir, std::vector<std::string>& warnings);
 
+/// Profiles, gauges, sections, inflows and barriers of the run's case for the maps of `source`. What names a file that
+/// has gone is left out, and `warnings` says so. UserError without resolved.toml.
+void read_places(FigureSource& source, std::vector<std::string>& warnings);
+
 }  // namespace frana

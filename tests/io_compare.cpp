@@ -123,6 +123,8 @@ TEST_CASE("compare leaves the contract's scores, a page and a picture, and they 
 
     const std::string page = text_of(slope.run_dir() / "compare.md");
     CHECK_THAT(page, Contains("## Against the survey") && Contains("| IoU"));
+    REQUIRE(hit + beyond < 85 * 70);  // so the difference is below zero
+    CHECK_THAT(page, Contains("| area difference, simulated minus surveyed [%] | -"));
     CHECK_THAT(done.out, Contains("| IoU") && Contains("compare.json"));
     if (no_renderer_reason().empty()) {
         CHECK(fs::file_size(slope.run_dir() / "figures" / "compare.png") > 1000);
@@ -165,6 +167,42 @@ TEST_CASE("A survey in the case is compared with at the end of the run", "[compa
     const Outcome later = slope.frana("compare run --survey footprint.geojson");  // no rasters were asked for
     CHECK(later.code == 2);
     CHECK_THAT(later.err, Contains("rasters/peak_depth.tif: is not there") && Contains("add \"geotiff\""));
+}
+
+TEST_CASE("A comparison with other files than the case's stands beside the run's own, and says so", "[compare]") {
+    const Slope slope(R"(["geotiff", "png"])",
+                      "[survey]\nfootprint = \"footprint.geojson\"\n[[gauge]]\nname = \"g\"\npoint = [60, 50]\n");
+    REQUIRE(slope.run.code == 0);
+    write_text(slope.path() / "other map.geojson", feature("Polygon", "[[[15,15],[90,15],[90,85],[15,85],[15,15]]]"));
+    const auto before = contents(slope.run_dir());
+    const Outcome other = slope.frana("compare run --survey 'other map.geojson'");
+    REQUIRE(other.code == 0);
+    CHECK_THAT(other.out, Contains("has other survey files (`footprint.geojson`)") && Contains("Written:\n"));
+    auto after = contents(slope.run_dir());
+    for (const char* name : {"compare_with_other_map.json", "compare_with_other_map.md"}) {
+        CHECK_THAT(other.out, Contains(name));
+        CHECK(after.count((slope.run_dir() / name).string()) == 1);
+    }
+    for (const auto& [file, text] : before) {
+        CAPTURE(file);
+        const bool same = after[file] == text;
+        if (fs::path(file).filename() != "run.json") CHECK(same);  // that lists the new files
+    }
+    CHECK_THAT(text_of(slope.run_dir() / "compare_with_other_map.md"), Contains("`report.md`"));
+
+    const Outcome same = slope.frana("compare run --survey footprint.geojson");
+    REQUIRE(same.code == 0);
+    CHECK_THAT(same.out, Contains("the survey files of the case") && Contains("run/compare.json\n"));
+    if (!no_renderer_reason().empty()) return;
+    // The run, compare and figures draw the same picture, path and gauge and all.
+    const fs::path picture = slope.run_dir() / "figures" / "compare.png";
+    const std::string drawn = before.at(picture.string());
+    CHECK(after.count((slope.run_dir() / "figures" / "compare_with_other_map.png").string()) == 1);
+    const auto as_drawn = [&] { return text_of(picture) == drawn; };
+    CHECK(as_drawn());
+    fs::remove(picture);
+    REQUIRE(slope.frana("figures run --size 1400x1200").code == 0);  // the size of a run's own
+    CHECK(as_drawn());
 }
 
 TEST_CASE("compare finds the terrain of a run without VTK files, and does without when it is gone", "[compare]") {
@@ -212,7 +250,8 @@ TEST_CASE("What cannot be compared leaves with 2, one sentence, and the run as i
     refused("run --survey footprint.geojson --json footprint.geojson", "found a file that this command reads");
     refused("run --survey footprint.geojson --json run/rasters/peak_depth.tif", "found a file that this command reads");
     refused("nowhere --survey footprint.geojson", "nowhere/run.json: cannot be read");
-    CHECK(slope.frana("compare run").code == 2);
+    refused("run", "found no survey");
+    CHECK(slope.frana("compare run --bed-change footprint.geojson --deposit footprint.geojson").code == 2);
     CHECK(contents(slope.run_dir()) == before);
 }
 
@@ -277,6 +316,15 @@ TEST_CASE("compare holds changes of the ground against a survey, in total and al
           Approx(json["simulated"]["deposited"].get<double>() - json["simulated"]["eroded"].get<double>()));
     CHECK_THAT(text_of(slope.run_dir() / "compare.md"), Contains("| Change of the ground against `dod.tif`"));
     if (no_renderer_reason().empty()) CHECK(fs::exists(slope.run_dir() / "figures" / "compare_bed_change.png"));
+
+    // Alone it has the same errors, and no scores of an extent.
+    const Outcome alone = slope.frana("compare run --bed-change dod.tif --bed-change-noise 0");
+    REQUIRE(alone.code == 0);
+    const Json of_alone = Json::parse(text_of(slope.run_dir() / "compare.json"));
+    CHECK(of_alone["bed_change"] == json);
+    CHECK_FALSE(of_alone.contains("iou"));
+    CHECK_THAT(alone.out, Contains("| Change of the ground against `dod.tif`") && Contains("compare_bed_change.csv") &&
+                              !Contains("IoU") && !Contains("figures/compare.png"));
 
     // An answer from another comparison does not stay.
     REQUIRE(slope.frana(compare).code == 0);

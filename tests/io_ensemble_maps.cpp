@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
 #include "ensemble/statistics.h"
 #include "io/deflate.h"
 #include "pond.h"
+#include "run/ensemble/outcomes.h"
 #include "run/web/web_page.h"
 
 namespace fs = std::filesystem;
@@ -162,7 +164,8 @@ TEST_CASE("Classes of hazard are a raster with colours and names, and areas in r
     CHECK(low + high == 3600.0);  // 12 x 12 pixels of 25 m2
     // Six columns of nodes are released; in half a second the edge stays within a cell of where it was.
     CHECK(high == Approx(6 * 12 * 25.0).margin(12 * 25.0));
-    CHECK_THAT(text_of(pond.path("many/report.md")), Contains("| low & seldom |"));
+    CHECK_THAT(text_of(pond.path("many/report.md")),
+               Contains("| low & seldom |") && Contains("at least 50 % of its runs reach (`share`)"));
     GDALAllRegister();  // the run was another process
     const std::unique_ptr<GDALDataset, decltype(&GDALClose)> file(
         static_cast<GDALDataset*>(GDALOpen(pond.path("many/rasters/hazard_class.tif").c_str(), GA_ReadOnly)),
@@ -180,6 +183,20 @@ TEST_CASE("Classes of hazard are a raster with colours and names, and areas in r
     REQUIRE(CSLCount(names) == 3);
     CHECK(std::string(names[1]) == "low & seldom");
     CHECK(band.GetNoDataValue() == 0.0);
+    pond.write("event.toml", two_outlines +
+                                 "[ensemble.hazard]\nyears = [30]\nreturn_period = 20\n"
+                                 "[[ensemble.hazard.class]]\nname = \"high\"\ncolour = \"#d81e28\"\n"
+                                 "[[ensemble.hazard.level]]\nclasses = [\"high\", \"none\"]\n");
+    REQUIRE(pond.frana("ensemble event.toml --out event --quiet").code == 0);
+    CHECK_THAT(text_of(pond.path("event/report.md")), Contains("comes back in 20 years (`return_period`)"));
+}
+
+TEST_CASE("The share of runs that have come goes on to the end of the runs", "[ensemble]") {
+    const double never = std::numeric_limits<double>::infinity();
+    const std::vector<frana::Vec2> corners = frana::growing_share({{2.0, 1.0}, {5.0, 1.0}, {never, 2.0}}, 4.0, 10.0);
+    const std::vector<frana::Vec2> steps = {{2.0, 0.0}, {2.0, 0.25}, {5.0, 0.25}, {5.0, 0.5}, {10.0, 0.5}};
+    CHECK(corners == steps);
+    CHECK(frana::growing_share({{never, 1.0}}, 1.0, 10.0).empty());
 }
 
 TEST_CASE("A scenario without an answer is told with the classes of hazard, and classes not requested any more go",

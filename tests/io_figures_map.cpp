@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include <fstream>
+#include <set>
 
 #include "base/error.h"
 
@@ -156,8 +157,67 @@ TEST_CASE("Barriers are drawn on their lines, and a few of them by name", "[figu
         return white;
     };
     const int named = white_at_name(figure);
-    for (int n = 0; n < 5; ++n) figure.barriers.push_back({"far", {{1900, 100}, {1950, 100}}});
+    for (int n = 0; n < 5; ++n) figure.barriers.push_back({"far " + std::to_string(n), {{1900, 100}, {1950, 100}}});
     CHECK(named > white_at_name(figure) + 100);
+}
+
+TEST_CASE("Houses are numbered where they are too many for names, up to 29", "[figures]") {
+    if (cannot_draw()) return;
+    // The texts of eight houses and of the same houses without numbers differ right of each, and of thirty nowhere.
+    const auto village = [](int count, const std::string& name) {
+        MapFigure figure = figures::valley();
+        for (int n = 0; n < count; ++n) {
+            const double x = 200.0 + 150.0 * (n % 8), y = 200.0 + 150.0 * (n / 8);
+            figure.barriers.push_back({name + std::to_string(n + 1), {{x, y}, {x + 40, y}, {x + 40, y + 40}, {x, y}}});
+        }
+        return figure;
+    };
+    const auto differ_right_of = [&](int count, int house) {
+        const MapFigure with = village(count, "houses_"), without = village(count, "houses");
+        const Pixels one = drawn(with), other = drawn(without);
+        const Vec2 corner = lay_out(with).pixel({240.0 + 150.0 * (house % 8), 220.0 + 150.0 * (house / 8)});
+        int different = 0;
+        for (int dx = 5; dx < 30; ++dx)
+            for (int dy = -8; dy <= 8; ++dy) {
+                const Vec2 p = corner + Vec2(dx, dy);
+                different += figures::distance(at(one, p), at(other, p)) > 60;
+            }
+        return different;
+    };
+    for (const int house : {0, 7, 28}) CHECK(differ_right_of(29, house) > 10);
+    CHECK(differ_right_of(30, 0) == 0);
+}
+
+TEST_CASE("Lines have the pen of their kind, and the name stands at its own line", "[figures]") {
+    if (cannot_draw()) return;
+    MapFigure figure = figures::valley();
+    // A bundle of three that begin at one place: names at their beginnings would be a heap.
+    figure.lines = {{"a", {{300, 300}, {900, 300}}, MapLine::profile},
+                    {"b", {{300, 310}, {900, 700}}, MapLine::section},
+                    {"c", {{300, 320}, {300, 1000}}, MapLine::inflow}};
+    const MapLayout layout = lay_out(figure);
+    for (const char* kind : {"profile", "section", "inflow"})
+        CHECK(std::count_if(layout.legend.begin(), layout.legend.end(),
+                            [&](const LegendEntry& e) { return e.text == kind; }) == 1);
+    std::set<std::vector<double>> dashes;
+    for (const LegendEntry& entry : layout.legend)
+        if (entry.kind == LegendEntry::Kind::cased_line) dashes.insert(entry.pen.dash);
+    CHECK(dashes.size() == 3);
+    // Each name's box is where the picture without names differs: near the middle of its line.
+    MapFigure nameless = figure;
+    for (NamedLine& line : nameless.lines) line.name = " ";
+    const Pixels with = drawn(figure), without = drawn(nameless);
+    for (const NamedLine& line : figure.lines) {
+        CAPTURE(line.name);
+        const Vec2 middle = layout.pixel(0.5 * (line.line.front() + line.line.back()));
+        int different = 0;
+        for (int dx = -40; dx <= 40; ++dx)
+            for (int dy = -30; dy <= 30; ++dy) {
+                const Vec2 p = middle + Vec2(dx, dy);
+                different += figures::distance(at(with, p), at(without, p)) > 60;
+            }
+        CHECK(different > 10);
+    }
 }
 
 TEST_CASE("No name stands on an adjacent house", "[figures]") {

@@ -222,7 +222,10 @@ TEST_CASE("What of a flood's table has not come in is told, before the run and a
     CHECK(left >= rest * (1.0 - 1e-12));
     CHECK(inflow["volume"].get<double>() == Approx(kVolume - left).epsilon(1e-12));
     CHECK_THAT(text_of(dir / "report.md"), Contains("; of their 240 m3 ") && Contains(" m3 had not come in |"));
-    CHECK_THAT(text_of(dir / "report.md"), Contains("Of momentum and energy, what came in is taken off what left."));
+    CHECK_THAT(text_of(dir / "report.md"), Contains("Net is what left less what came in: energy is negative"));
+    const double net = record_of(dir)["budgets"]["energy"]["left_domain"];
+    CHECK(net < 0.0);  // nothing left, and what came in stood above the datum
+    CHECK_THAT(text_of(dir / "report.md"), Contains(fmt::format("| net {:.4g} |", net)));
     // Until t after the peak the triangle has brought all but what is right of t.
     const double until = 9.0 - std::sqrt(2.0 * left * 7.0 / 60.0);
     CHECK_THAT(text_of(dir / "report.md"),
@@ -237,6 +240,7 @@ TEST_CASE("A run that ends before anything came in says so", "[program][inflow]"
     CHECK(plane.frana("run CASE --quiet --until 0.5 --set 'output.formats=[\"png\"]' --out " + dir.string()).code == 0);
     const std::string report = text_of(dir / "report.md");
     CHECK_THAT(report, Contains("--resume goes on: no material has come in yet") && !Contains("nothing moves"));
+    CHECK(record_of(dir)["rest"]["reason"] == "before any material came in");
     CHECK_THAT(report, Contains("| 0 m3 | 0 m3 | not reached | 0 m3 |"));
     CHECK_FALSE(fs::exists(dir / "figures" / "sections_discharge.png"));
     CHECK_THAT(report, Contains("| came in by inflows | 0 m3; no row of the tables' 240 m3 has come in yet |"));

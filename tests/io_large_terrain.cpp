@@ -180,6 +180,23 @@ TEST_CASE("Rasters of a large terrain show where the flow was, on the terrain's 
     CHECK(on.code == 0);
 }
 
+TEST_CASE("The growth that check tells is that of the path over all of the terrain", "[terrain][erosion]") {
+    // Held in part, and held in whole, on the same window: the path goes on for kilometres beyond the part.
+    const std::string check =
+        "check fields.toml --set terrain.window=[612000,5209000,624000,5218000] --set erodible.depth=0.5 "
+        "--set erodible.growth=0.002";
+    const auto remark = [&](const std::string& arguments) {
+        const Outcome told = call_frana(large_terrain().path(), arguments);
+        INFO(told.err);
+        REQUIRE(told.code == 0);
+        const std::size_t from = told.out.find("remark      erodible.growth: found ");
+        REQUIRE(from != std::string::npos);
+        return told.out.substr(from, told.out.find('\n', from) - from);
+    };
+    const std::string whole = remark(check + " --set output.extent=terrain");
+    CHECK(remark(check) == whole);
+}
+
 TEST_CASE("A terrain that does not fit into memory is refused by all commands before it is read", "[terrain]") {
     const FreshFolder folder;
     RasterSpec spec;

@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -105,6 +107,43 @@ TEST_CASE("a run leaves every product, and the report mentions each of them") {
         CHECK(report.find("](" + figure.path + ")") != std::string::npos);
         CHECK(fs::file_size(run.dir() / figure.path) > 1000);
     }
+}
+
+TEST_CASE("the report has a table of gauges, with the largest values of their series") {
+    const FakeRun run;
+    const Table series = read_table(run.dir() / "gauges" / "bridge.csv");
+    const auto& depth = series.column("depth");
+    const double deepest = *std::max_element(depth.begin(), depth.end());
+    const auto& speed = series.column("speed");
+    const double fastest = *std::max_element(speed.begin(), speed.end());
+    const auto came =
+        std::find_if(depth.begin(), depth.end(), [&](double h) { return h > run.scene.output.footprint_depth; });
+    REQUIRE(came != depth.end());
+    const double arrival = series.column("t")[static_cast<std::size_t>(came - depth.begin())];
+    CHECK(text_of(run.dir() / "report.md")
+              .find(fmt::format("| bridge | 1014, 2018 | {:.4g} s | {:.4g} m | {:.4g} m/s |", arrival, deepest,
+                                fastest)) != std::string::npos);
+}
+
+TEST_CASE("a run that ends with nothing in motion is not at rest while more is to come in") {
+    RunRecord record = FakeRun().record;
+    record.summary.reason = "end";
+    record.summary.motion = {};
+    InflowBudget inflow;
+    inflow.tables = inflow.expected = inflow.volume = 10.0;
+    record.extras.inflow = inflow;
+    const auto reason = [&] { return Json::parse(run_json(record))["rest"]["reason"].get<std::string>(); };
+    CHECK(reason() == "at rest");
+    record.extras.inflow->tables = 12.0;
+    CHECK(reason() == "before all material came in");
+    CHECK(reason_text(record).find("not all material has come in yet") != std::string::npos);
+    record.extras.inflow->tables = 10.0;
+    LateEntry late;
+    late.at = 30.0;
+    record.extras.late = {late};
+    CHECK(reason() == "before all material came in");
+    record.extras.late.front().entered = 30.0;
+    CHECK(reason() == "at rest");
 }
 
 TEST_CASE("run.json has the contract's keys with the simulation's numbers") {

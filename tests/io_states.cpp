@@ -19,6 +19,7 @@
 #include "frana_commands.h"
 #include "fresh_folder.h"
 #include "observe/table.h"
+#include "program.h"
 #include "read_polydata.h"
 #include "run/folder/look.h"
 #include "run/folder/states.h"
@@ -219,6 +220,15 @@ TEST_CASE("a run's states have its files, ranges and cameras, and no slot is lef
     REQUIRE(focal.size() == 2);
     for (std::size_t axis = 0; axis < 3; ++axis)
         CHECK(std::stod(focal[0][axis]) == look["camera"]["view"]["focal"][axis].get<double>());
+}
+
+TEST_CASE("the help of states names all of them", "[states]") {
+    const FreshFolder folder;
+    const std::string help = call_frana(folder.path(), "states --help").out;
+    for (const std::string& name : state_names()) {
+        CAPTURE(name);
+        CHECK(std::regex_search(help, std::regex("[ ,]" + name + "[,\\s]")));
+    }
 }
 
 TEST_CASE("slots take numbers, parts of ranges, texts and paths, with XML's own letters escaped") {

@@ -218,3 +218,17 @@ TEST_CASE("Every remark of the table is in the manual of the commands", "[scene]
         CHECK(text.str().find(std::string("| ") + row.title + " |") != std::string::npos);
     }
 }
+
+TEST_CASE("Remarks on how coordinates are taken are one for all files, and others stay as they are", "[scene]") {
+    const std::string local =
+        ": coordinates are taken as the terrain's own, since the terrain has no CRS (here X is given)";
+    std::vector<std::string> log = {"dem.asc: no CRS; its coordinates are taken as local metres", "a.geojson" + local,
+                                    "release.0: found much", "b.geojson" + local, "b.geojson" + local};
+    const std::vector<std::string> joined = {log[0], "a.geojson, b.geojson" + local, log[2]};
+    join_remarks_on_coordinates(log);
+    CHECK(log == joined);
+    log.push_back("b.geojson" + local);  // read again
+    log.push_back("c.geojson" + local);
+    join_remarks_on_coordinates(log);
+    CHECK(log == std::vector<std::string>{joined[0], "a.geojson, b.geojson, c.geojson" + local, joined[2]});
+}

@@ -18,7 +18,8 @@ public:
     Comparing(const SimulatedRun& run, const Survey& survey)
         : run_(run), survey_(survey), rings_(rings_of(survey.footprint)) {
         expect(run.peak_depth != nullptr, "a comparison needs the peak depth");
-        expect(area_of(rings_) > 0.0, "a survey has an area");
+        result_.extents = area_of(rings_) > 0.0;
+        expect(result_.extents || survey.bed_change, "a survey has an area, or changes of the bed");
         result_.survey = survey.footprint.source;
         result_.path_source = survey.path_source;
         result_.deposit_source = survey.deposit_source;
@@ -30,6 +31,14 @@ public:
 
     Comparison all() {
         choose_path();
+        if (result_.extents) compare_extents();
+        compare_beds();
+        if (result_.extents) make_remarks();
+        return std::move(result_);
+    }
+
+private:
+    void compare_extents() {
         if (run_.final_depth) lying_ = with_deposit(*run_.final_depth, run_.deposited_depth);
         const bool buried = lying_ && run_.deposited_depth;
         const Raster ever = buried ? deepest_cover(*run_.peak_depth, *lying_) : *run_.peak_depth;
@@ -41,12 +50,8 @@ public:
             result_.surveyed_reach = farthest_from(result_.path.front(), rings_);
         }
         if (survey_.deposit && lying_) result_.deposit = deposit_errors(*lying_, *survey_.deposit, run_.limit);
-        compare_beds();
-        make_remarks();
-        return std::move(result_);
     }
 
-private:
     void choose_path() {
         if (survey_.path) {
             result_.path = *survey_.path;
@@ -71,7 +76,8 @@ private:
                 result_.path.clear();
         }
         if (result_.path.empty())
-            remark("no steepest path from the start of the flow is known, so no runout; give one with --path");
+            remark("no steepest path from the start of the flow is known, so no {}; give one with --path",
+                   result_.extents ? "runout" : "volumes along it");
     }
 
     /// NaN where there is no terrain.

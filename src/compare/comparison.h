@@ -26,7 +26,7 @@ struct SimulatedRun {
 
 /// What was surveyed.
 struct Survey {
-    Polygons footprint;                ///< polygons that do not overlap
+    Polygons footprint;                ///< polygons that do not overlap; none: changes of the bed are compared alone
     std::optional<Polyline> path;      ///< for the runout; nothing: the steepest one from the start of the flow
     std::optional<Raster> deposit;     ///< thickness [m] on pixels of the run, maybe more around them
     std::string path_source;           ///< file of the path
@@ -48,6 +48,7 @@ struct Comparison {
     std::string survey, path_source, deposit_source, bed_change_source;
     double limit = 0.1;
     double cell = 1.0;
+    bool extents = true;                ///< a footprint was surveyed; else there are no scores of extents
     ExtentScores trace;                 ///< everything ever covered, as Fois et al. (2024), section 4.3
     std::optional<ExtentScores> final;  ///< what is covered at the end
     Polyline path;                      ///< empty: none
@@ -59,6 +60,7 @@ struct Comparison {
     std::vector<std::string> remarks;
 };
 
+/// Without a footprint the survey has to have a bed_change, which alone is compared.
 Comparison compare(const SimulatedRun& run, const Survey& survey);
 
 }  // namespace frana

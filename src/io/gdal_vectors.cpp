@@ -38,15 +38,15 @@ gdal::Transformation to_terrain(Source& source, OGRLayer& layer) {
     const OGRSpatialReference* declared = layer.GetSpatialRef();
     const std::string name = source.name();
     if (!declared || declared->IsEmpty() || declared->IsLocal()) {
-        if (source.terrain) source.log.push_back(name + ": no CRS; its coordinates are taken as the terrain's own");
+        if (source.terrain) source.log.push_back(name + ": no CRS; coordinates are taken as the terrain's own");
         return nullptr;
     }
     // By its standard (RFC 7946) a GeoJSON without a crs member is WGS 84; local coordinates say nothing of
     // it.
     if (!source.terrain) {
         source.log.push_back(
-            fmt::format("{}: its coordinates are taken as the terrain's own, since the terrain has "
-                        "no CRS (the file's is {})",
+            fmt::format("{}: coordinates are taken as the terrain's own, since the terrain has "
+                        "no CRS (here {} is given)",
                         name, crs_name(*declared)));
         return nullptr;
     }
@@ -54,7 +54,7 @@ gdal::Transformation to_terrain(Source& source, OGRLayer& layer) {
     const bool known = layer.GetExtent(&envelope, 1) == OGRERR_NONE;
     if (declared->IsGeographic() && known && !gdal::degrees_possible(envelope)) {
         source.log.push_back(
-            fmt::format("{}: its coordinates are taken as the terrain's own, since they are no "
+            fmt::format("{}: coordinates are taken as the terrain's own, since they are no "
                         "degrees, which {} would ask for",
                         name, crs_name(*declared)));
         return nullptr;

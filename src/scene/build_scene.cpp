@@ -13,6 +13,7 @@
 #include "scene/ground_fields.h"
 #include "scene/memory_need.h"
 #include "scene/problems.h"
+#include "scene/remarks.h"
 #include "scene/scene_parts.h"
 #include "scene/terrain_part.h"
 #include "terrain/holes.h"
@@ -60,6 +61,7 @@ public:
         remark_on_releases_in_boxes(scene_);
         remark_on_fields(case_, scene_);
         cut_releases();
+        join_remarks_on_coordinates(scene_.log);
         return std::move(built_);
     }
 

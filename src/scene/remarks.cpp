@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <sstream>
 
 #include "base/error.h"
 
@@ -83,6 +85,32 @@ void remark_on(std::vector<std::string>& log, Remark remark, const std::string& 
                   fmt::format(fmt::runtime(row->text), fmt::arg("value", found.value), fmt::arg("low", row->low),
                               fmt::arg("high", row->high), fmt::arg("other", found.other),
                               fmt::arg("what", found.what)));
+}
+
+void join_remarks_on_coordinates(std::vector<std::string>& log) {
+    struct Joined {
+        std::vector<std::string> files;
+        std::size_t place;
+    };
+    std::map<std::string, Joined> by_text;
+    std::vector<std::string> kept;
+    for (const std::string& remark : log) {
+        const std::size_t colon = remark.find(": ");
+        const std::string text = colon == std::string::npos ? "" : remark.substr(colon + 2);
+        if (text.find("coordinates are taken as") == std::string::npos) {
+            kept.push_back(remark);
+            continue;
+        }
+        Joined& joined = by_text.try_emplace(text, Joined{{}, kept.size()}).first->second;
+        if (joined.files.empty()) kept.push_back(remark);
+        std::istringstream names(remark.substr(0, colon));  // of one that was joined before they are several
+        for (std::string name; std::getline(names >> std::ws, name, ',');)
+            if (std::find(joined.files.begin(), joined.files.end(), name) == joined.files.end())
+                joined.files.push_back(name);
+    }
+    for (const auto& [text, joined] : by_text)
+        kept[joined.place] = fmt::format("{}: {}", fmt::join(joined.files, ", "), text);
+    log = std::move(kept);
 }
 
 }  // namespace frana

@@ -52,4 +52,8 @@ void remark_on(std::vector<std::string>& log, Remark remark, const std::string& 
 void remark_on_holes(std::vector<std::string>& log, const Holes& holes, const GridGeometry& grid, bool open,
                      const std::string& place);
 
+/// Of remarks "FILE: text" that say of several files how their coordinates are taken, the first names all of them:
+/// "FILE, FILE: text". The others are taken out.
+void join_remarks_on_coordinates(std::vector<std::string>& log);
+
 }  // namespace frana

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/error.h"
 #include "vtk_io/figures/map_figure_furniture.h"
@@ -149,16 +150,69 @@ private:
             draw_gauge(canvas_, at, u);
             name(gauge.name, {at.x(), at.y() + 0.3 * u});
         }
-        for (const NamedLine& profile : figure_.profiles) {
-            const auto pieces = on_sheet(profile.line);
-            for (const auto& piece : pieces)
-                stroke_cased(canvas_, piece, {colours::black, 0.12 * u, {0.55 * u, 0.3 * u}});
-            if (!pieces.empty()) name(profile.name, pieces.front().front());
+        for (const NamedLine& line : figure_.lines) {
+            lines_.push_back(on_sheet(line.line));
+            for (const auto& piece : lines_.back()) stroke_cased(canvas_, piece, line_pen(line.kind, u));
         }
+        for (std::size_t k = 0; k < lines_.size(); ++k)
+            if (!lines_[k].empty()) name_line(k);
+    }
+
+    /// The place that a share of the line's longest piece is from its start.
+    static Vec2 along(const std::vector<std::vector<Vec2>>& pieces, double share) {
+        const auto shorter = [](const auto& a, const auto& b) { return length_of(a) < length_of(b); };
+        const std::vector<Vec2>& line = *std::max_element(pieces.begin(), pieces.end(), shorter);
+        double left = share * length_of(line);
+        for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+            const Vec2 way = line[k + 1] - line[k];
+            if (left < way.norm()) return line[k] + left / way.norm() * way;
+            left -= way.norm();
+        }
+        return line.back();
+    }
+
+    static double length_of(const std::vector<Vec2>& line) {
+        double length = 0.0;
+        for (std::size_t k = 0; k + 1 < line.size(); ++k) length += (line[k + 1] - line[k]).norm();
+        return length;
+    }
+
+    /// A name that stands closer to a line could be taken for its own.
+    Rectangle wider(const Rectangle& box) const {
+        const double margin = layout_.unit;
+        return {box.x0 - margin, box.y0 - margin, box.x1 + margin, box.y1 + margin};
+    }
+
+    bool on_line(const Rectangle& box, std::size_t k) const {
+        return std::any_of(lines_[k].begin(), lines_[k].end(),
+                           [&](const std::vector<Vec2>& piece) { return !clipped(piece, box).empty(); });
+    }
+
+    /// At the line's middle, else at an end or between, close to it and off all other lines. Off the line itself as
+    /// well where there is room. Where all is taken it stands by the middle, as near as it can.
+    void name_line(std::size_t k) {
+        const std::string& text = figure_.lines[k].name;
+        constexpr int kClose = 4;  // steps up and down
+        for (const bool off_itself : {true, false})
+            for (const double share : {0.5, 0.0, 1.0, 0.25, 0.75}) {
+                const auto taken = [&](const Rectangle& box) {
+                    for (std::size_t other = 0; other < lines_.size(); ++other)
+                        if (other == k ? off_itself && on_line(box, k) : on_line(wider(box), other)) return true;
+                    return false;
+                };
+                if (const auto place = free_next_to(text, along(lines_[k], share), kClose, taken))
+                    return write(text, *place);
+            }
+        name(text, along(lines_[k], 0.5));
+    }
+
+    /// "houses_7" -> "7": the number of one of several barriers; empty where it is none of them.
+    static std::string number_in(const std::string& name) {
+        const std::size_t last = name.find_last_not_of("0123456789");
+        return last == std::string::npos || name[last] != '_' ? "" : name.substr(last + 1);
     }
 
     void barriers() {
-        constexpr std::size_t most_named = 6;  // houses of a village would hide what comes to them
         std::vector<std::pair<std::string, Vec2>> names;
         for (const NamedLine& barrier : figure_.barriers) {
             const auto pieces = on_sheet(barrier.line);
@@ -167,10 +221,14 @@ private:
                 stroke_cased(canvas_, piece, {colours::barrier, kBarrierPen * layout_.unit, {}});
             const Rectangle box = box_of(pieces);
             if (std::max(box.width(), box.height()) < kSmall * layout_.unit) houses_.push_back(box);
-            names.emplace_back(barrier.name, Vec2(box.x1, 0.5 * (box.y0 + box.y1)));  // to its right
+            const bool again = !names.empty() && names.back().first == barrier.name;  // a hole, or another part
+            if (!again) names.emplace_back(barrier.name, Vec2(box.x1, 0.5 * (box.y0 + box.y1)));  // to its right
         }
-        if (names.size() > most_named) return;
-        for (const auto& [text, at] : names) name(text, at);
+        if (names.size() >= kBarriersNumbered) return;
+        for (const auto& [text, at] : names) {
+            const std::string shown = names.size() <= kBarriersNamed ? text : number_in(text);
+            if (!shown.empty()) name(shown, at);
+        }
     }
 
     static Rectangle box_of(const std::vector<std::vector<Vec2>>& pieces) {
@@ -180,33 +238,51 @@ private:
         return {low.x(), low.y(), high.x(), high.y()};
     }
 
-    /// A name next to a point: to its right, or where that is taken, as near as there is room.
-    void name(const std::string& text, const Vec2& at) {
+    TextStyle name_style() const { return {0.9 * layout_.unit, Across::left, Upward::middle, 0.0, false, true, {}}; }
+
+    /// A name's box beside a point, on its right or left, its middle at a height [px].
+    Rectangle next_to(const std::string& text, const Vec2& at, bool right, double y) const {
+        const double u = layout_.unit, width = text_size(text, name_style()).x();
+        const double x = at.x() + (right ? 0.9 * u : -0.9 * u - width);
+        return Rectangle{x, y - 0.6 * u, x + width, y + 0.6 * u};
+    }
+
+    bool fits(const Rectangle& r) const {
         const double u = layout_.unit;
         const Rectangle& f = layout_.frame;
-        TextStyle style{0.9 * u, Across::left, Upward::middle, 0.0, false, true, {}};
-        const double width = text_size(text, style).x(), level = std::clamp(at.y(), f.y0 + u, f.y1 - u);
-        const auto box = [&](bool right, double y) {
-            const double x = at.x() + (right ? 0.9 * u : -0.9 * u - width);
-            return Rectangle{x, y - 0.6 * u, x + width, y + 0.6 * u};
-        };
-        const auto fits = [&](const Rectangle& r) {
-            const auto meets = [&](const Rectangle& other) { return r.meets(other); };
-            return r.x0 > f.x0 && r.x1 < f.x1 - 0.3 * u && r.y0 >= f.y0 && r.y1 <= f.y1 &&
-                   std::none_of(names_.begin(), names_.end(), meets) &&
-                   std::none_of(houses_.begin(), houses_.end(), meets);
-        };
-        const auto nearest_free = [&] {
-            constexpr int kFarthest = 30;  // steps up and down
-            for (int n = 0; n <= kFarthest; ++n)
-                for (const double y : {level + 0.31 * u * n, level - 0.31 * u * n})
-                    for (const bool right : {true, false})
-                        if (fits(box(right, y))) return box(right, y);
-            return box(at.x() + 1.2 * u + width < f.x1, level);
-        };
-        const Rectangle place = nearest_free();
+        const auto meets = [&](const Rectangle& other) { return r.meets(other); };
+        return r.x0 > f.x0 && r.x1 < f.x1 - 0.3 * u && r.y0 >= f.y0 && r.y1 <= f.y1 &&
+               std::none_of(names_.begin(), names_.end(), meets) && std::none_of(houses_.begin(), houses_.end(), meets);
+    }
+
+    /// A height of the frame that a name there is within [px].
+    double level_of(const Vec2& at) const {
+        return std::clamp(at.y(), layout_.frame.y0 + layout_.unit, layout_.frame.y1 - layout_.unit);
+    }
+
+    /// The nearest free box beside a point, at most so many steps up or down, that is not `taken`.
+    template <class Taken>
+    std::optional<Rectangle> free_next_to(const std::string& text, const Vec2& at, int farthest,
+                                          const Taken& taken) const {
+        const double u = layout_.unit, level = level_of(at);
+        for (int n = 0; n <= farthest; ++n)
+            for (const double y : {level + 0.31 * u * n, level - 0.31 * u * n})
+                for (const bool right : {true, false})
+                    if (const Rectangle box = next_to(text, at, right, y); fits(box) && !taken(box)) return box;
+        return {};
+    }
+
+    void write(const std::string& text, const Rectangle& place) {
         names_.push_back(place);
-        canvas_.text(text, {place.x0, 0.5 * (place.y0 + place.y1)}, style);
+        canvas_.text(text, {place.x0, 0.5 * (place.y0 + place.y1)}, name_style());
+    }
+
+    /// A name next to a point: to its right, or where that is taken, as near as there is room.
+    void name(const std::string& text, const Vec2& at) {
+        constexpr int kFarthest = 30;  // steps up and down
+        const double u = layout_.unit, width = text_size(text, name_style()).x();
+        const auto free = free_next_to(text, at, kFarthest, [](const Rectangle&) { return false; });
+        write(text, free ? *free : next_to(text, at, at.x() + 1.2 * u + width < layout_.frame.x1, level_of(at)));
     }
 
     void axes() {
@@ -254,6 +330,10 @@ private:
     static constexpr double kSmall = 3.0;  ///< a barrier that names stay off [units]: a name would hide it
     std::vector<Rectangle> names_;         ///< of barriers, profiles and gauges
     std::vector<Rectangle> houses_;        ///< small barriers
+    std::vector<std::vector<std::vector<Vec2>>> lines_;  ///< pieces of each of the figure's lines [px]
+    /// Houses of a village would hide what comes to them under names. Of more than so many only the numbers are told.
+    static constexpr std::size_t kBarriersNamed = 6;
+    static constexpr std::size_t kBarriersNumbered = 30;  ///< from so many on nothing is
 };
 
 }  // namespace

@@ -12,9 +12,13 @@
 
 namespace frana {
 
+/// What a line of a map is; each has dashes of its own.
+enum class MapLine { profile, section, inflow, path };
+
 struct NamedLine {
     std::string name;
     Polyline line;
+    MapLine kind = MapLine::profile;  ///< not of barriers
 };
 struct NamedPoint {
     std::string name;
@@ -48,8 +52,7 @@ struct MapFigure {
     /// them instead of a colour bar.
     std::vector<MapClass> classes;
     std::vector<NamedLine> barriers;  ///< in plan: outlines are closed, faces of walls along lines are not
-    std::vector<NamedLine> profiles;
-    std::string profiles_are = "profile";  ///< in the legend
+    std::vector<NamedLine> lines;
     std::vector<NamedPoint> gauges;
     std::string footer;                          ///< model, parameters; wrapped
     std::optional<std::array<double, 4>> focus;  ///< xmin, ymin, xmax, ymax to be in view [m]

@@ -12,6 +12,20 @@ double text_unit(int width, int height) {
     return std::clamp(21.0 * std::sqrt(area), 11.0, 60.0);
 }
 
+Pen line_pen(MapLine kind, double unit) {
+    Pen pen{colours::black, 0.12 * unit, {0.55 * unit, 0.3 * unit}};
+    if (kind == MapLine::section) pen.dash = {0.9 * unit, 0.25 * unit, 0.15 * unit, 0.25 * unit};
+    if (kind == MapLine::inflow) pen.dash = {0.22 * unit, 0.18 * unit}, pen.width = 0.2 * unit;
+    return pen;
+}
+
+const char* line_name(MapLine kind) {
+    return kind == MapLine::profile   ? "profile"
+           : kind == MapLine::section ? "section"
+           : kind == MapLine::inflow  ? "inflow"
+                                      : "runout path";
+}
+
 Captions make_captions(const std::string& title, const std::string& footer, double unit, double width) {
     Captions captions;
     captions.title_style = {1.25 * unit, Across::left, Upward::top, 0.0, true, false, {}};
@@ -156,9 +170,11 @@ std::vector<LegendEntry> make_legend(const MapFigure& figure, const MapLayout& l
         legend.push_back(entry(Kind::cased_line, colours::survey, figure.survey_pen() * u, "surveyed outline"));
     if (!figure.barriers.empty())
         legend.push_back(entry(Kind::cased_line, colours::barrier, kBarrierPen * u, "barrier"));
-    if (!figure.profiles.empty()) {
-        legend.push_back(entry(Kind::cased_line, colours::black, 0.12 * u, figure.profiles_are));
-        legend.back().pen.dash = {0.55 * u, 0.3 * u};
+    for (const MapLine kind : {MapLine::profile, MapLine::section, MapLine::inflow, MapLine::path}) {
+        const auto is_one = [&](const NamedLine& line) { return line.kind == kind; };
+        if (std::none_of(figure.lines.begin(), figure.lines.end(), is_one)) continue;
+        legend.push_back(entry(Kind::cased_line, colours::black, 0.0, line_name(kind)));
+        legend.back().pen = line_pen(kind, u);
     }
     if (!figure.gauges.empty()) legend.push_back(entry(Kind::point, colours::black, 1.0, "gauge"));
     if (layout.contour_interval > 0.0)

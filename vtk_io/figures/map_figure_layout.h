@@ -10,6 +10,10 @@ namespace frana {
 /// Thickness of a barrier's line, in sizes of ordinary text.
 inline constexpr double kBarrierPen = 0.2;
 
+/// The pen of a line by its kind, in a picture with text of that size [px], and its name in the legend.
+Pen line_pen(MapLine kind, double unit);
+const char* line_name(MapLine kind);
+
 /// The texts above and below a picture.
 struct Captions {
     TextStyle title_style, footer_style;

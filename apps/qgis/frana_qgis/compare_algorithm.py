@@ -23,7 +23,8 @@ class CompareWithSurvey(FranaAlgorithm):
     NAME = "compare"
     TITLE = "Compare with survey"
     HELP = ("Holds a finished run against the mapped extent of the event and, if there is one, against a raster of its "
-            "deposit. The scores go to compare.json and compare.md in the run's folder.")
+            "deposit. The scores go to compare.json and compare.md in the run's folder. Where the case has "
+            "another survey, they are named after the one given here.")
 
     def initAlgorithm(self, config=None):
         self.addParameter(QgsProcessingParameterFile("RUN", "Folder of the run",
@@ -56,13 +57,13 @@ class CompareWithSurvey(FranaAlgorithm):
             self._arguments += ["--path", self._vector("PATH", crs, inputs, parameters, context, feedback)]
 
     def work(self, parameters, context, feedback):
-        self.call(self._arguments, feedback)
-        folder = self.parameterAsFile(parameters, "RUN", context)
-        scores = os.path.join(folder, "compare.json")
+        ended = self.call(self._arguments, feedback)
+        written = ended.lines[ended.lines.index("Written:") + 1:]
+        scores, table = (next(name for name in written if name.endswith(kind)) for kind in (".json", ".md"))
         with open(scores, encoding="utf-8") as file:
             told = json.load(file)
         found = {name: told[key] for name, key in _SCORES.items() if told.get(key) is not None}
-        found.update(SCORES=scores, TABLE=existing(folder, "compare.md"))
+        found.update(SCORES=scores, TABLE=table)
         return found
 
     def _vector(self, name, crs, inputs, parameters, context, feedback):

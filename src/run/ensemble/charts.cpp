@@ -36,17 +36,14 @@ Curve larger(const WeightedRuns& runs, const std::string& name, const Outcome& o
     return curve;
 }
 
-/// How likely the flow has come by a time.
+/// How likely the flow has come by a time, until the last run ended.
 Curve come_by(const WeightedRuns& runs, const std::string& name, const Outcome& arrival) {
+    double end = 0.0;
+    for (const SampleResult* run : runs.ended) end = std::max(end, run->time);
     Curve curve;
     curve.name = name;
-    double come = 0.0;
-    for (const auto& [time, weight] : runs.by_size(arrival)) {
-        if (!std::isfinite(time)) break;
-        curve.x.push_back(time), curve.y.push_back(come / runs.total);
-        come += weight;
-        curve.x.push_back(time), curve.y.push_back(std::min(1.0, come / runs.total));
-    }
+    for (const Vec2& corner : growing_share(runs.by_size(arrival), runs.total, end))
+        curve.x.push_back(corner.x()), curve.y.push_back(corner.y());
     return curve;
 }
 
@@ -138,6 +135,20 @@ void draw_scatter(const Charts& of) {
 }
 
 }  // namespace
+
+std::vector<Vec2> growing_share(const std::vector<std::pair<double, double>>& by_size, double total, double end) {
+    std::vector<Vec2> corners;
+    double share = 0.0, sum = 0.0;
+    for (const auto& [number, weight] : by_size) {
+        if (!std::isfinite(number)) break;
+        corners.emplace_back(number, share);
+        sum += weight;
+        share = std::min(1.0, sum / total);
+        corners.emplace_back(number, share);
+    }
+    if (!corners.empty() && end > corners.back().x()) corners.emplace_back(end, share);
+    return corners;
+}
 
 void draw_charts(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
                  const WeightedRuns& runs, EnsembleSummary& summary) {

@@ -74,6 +74,10 @@ public:
 void write_hazard(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
                   const WeightedRuns& runs, EnsembleSummary& summary);
 
+/// A share that grows by each weight, over `total`, at its number: corners of its steps, on to `end`. `by_size`
+/// ascends; what is infinite never comes. Empty where nothing comes.
+std::vector<Vec2> growing_share(const std::vector<std::pair<double, double>>& by_size, double total, double end);
+
 /// Draws runout.png, convergence.png, scatter.png and, of a case with gauges, gauges_*.png; names those that were drawn.
 void draw_charts(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
                  const WeightedRuns& runs, EnsembleSummary& summary);

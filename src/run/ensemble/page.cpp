@@ -115,12 +115,26 @@ Json hazard_json(const HazardTable& table, const EnsembleSummary& summary) {
     return json;
 }
 
+/// How often a strength comes, by which the table is read.
+std::string hazard_rule(const HazardTable& table) {
+    if (table.event_years)
+        return fmt::format(
+            "The runs are of one event, which comes back in {:g} years (`return_period`). A strength comes back in "
+            "that "
+            "time over the share of the runs that reach it. A place has the greatest class of all strengths.",
+            *table.event_years);
+    return fmt::format(
+        "At each place a scenario has the strongest level that at least {:g} % of its runs reach (`share`). It comes "
+        "back in its own return period. A place has the greatest class of all scenarios.",
+        100.0 * table.share);
+}
+
 /// The table of hazard, and how much is in each class.
 std::string hazard_section(const EnsemblePlan& plan, const EnsembleSummary& summary) {
     if (!plan.hazard) return "";
     const HazardTable& table = *plan.hazard;
-    std::string page =
-        fmt::format("\n\n## Classes of hazard{}\n\n| Strength |", table.preset.empty() ? "" : ": " + table.preset);
+    std::string page = fmt::format("\n\n## Classes of hazard{}\n\n{}\n\n| Strength |",
+                                   table.preset.empty() ? "" : ": " + table.preset, hazard_rule(table));
     std::string line = "\n|---|";
     for (const double years : table.years) page += fmt::format(" up to {:g} years |", years), line += "---|";
     page += " later |" + line + "---|";

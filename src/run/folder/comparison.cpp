@@ -106,7 +106,10 @@ std::string extent_table(const Comparison& c) {
     add("recall", "{:.3f}", [](E s) { return s.areas.recall(); });
     add("F1", "{:.3f}", [](E s) { return s.areas.f1(); });
     add("simulated over surveyed area", "{:.3f}", [](E s) { return s.areas.area_ratio(); });
-    add("area difference [%]", "{:.1f}", [](E s) { return s.areas.area_difference_percent(); });
+    add("area difference, simulated minus surveyed [%]", "{:+.1f}", [](E s) {
+        const double difference = s.areas.simulated() - s.areas.surveyed();
+        return std::copysign(s.areas.area_difference_percent(), difference);
+    });
     add("symmetric difference [%]", "{:.1f}", [](E s) { return s.areas.symmetric_difference_percent(); });
     add("runout, simulated [m]", "{:.1f}", [](E s) { return s.runout; });
     add("runout, surveyed [m]", "{:.1f}", [&](E) { return c.surveyed_runout; });
@@ -213,10 +216,10 @@ Survey read_survey_files(const SurveyFiles& files, const Raster& like, std::vect
 
 std::string comparison_json(const Comparison& c) {
     Json json;
-    json["survey"] = c.survey;
+    if (c.extents) json["survey"] = c.survey;
     json["threshold"] = c.limit;
     json["cell"] = c.cell;
-    add_scores(json, c.trace, c);
+    if (c.extents) add_scores(json, c.trace, c);
     json["runout_path"] = c.path_source;
     if (c.deposit) {
         json["deposit"] = c.deposit_source;
@@ -228,13 +231,13 @@ std::string comparison_json(const Comparison& c) {
     return json.dump(2) + "\n";
 }
 
-void write_scores(const fs::path& run_dir, const fs::path& json, const Comparison& c) {
+void write_scores(const fs::path& run_dir, const fs::path& json, const Comparison& c, const std::string& name) {
     write_text(json, comparison_json(c));
-    const fs::path file = run_dir / "compare_bed_change.csv";
+    const fs::path file = run_dir / (name + "_bed_change.csv");
     std::error_code none;
     if (c.bed_change_steps.empty()) {  // what an earlier comparison left is not of this one
         fs::remove(file, none);
-        fs::remove(run_dir / "figures" / "compare_bed_change.png", none);
+        fs::remove(run_dir / "figures" / (name + "_bed_change.png"), none);
         return;
     }
     TableWriter table(
@@ -252,14 +255,19 @@ void write_scores(const fs::path& run_dir, const fs::path& json, const Compariso
 
 std::string comparison_section(const Comparison& c) {
     std::string text = "## Against the survey\n\n";
-    text += fmt::format(
-        "Survey: `{}`. Simulated is every pixel of {:.6g} m deeper than {:.6g} m; the survey's area in each pixel is "
-        "exact. The survey is the reference (true positive + false negative). Runout is the horizontal length along "
-        "{} to the farthest point of each outline; reach is the straight distance from the path's start.\n\n",
-        c.survey, c.cell, c.limit,
-        c.path.empty() ? std::string("no known path")
-                       : (c.path_source.find("steepest") == 0 ? "the " + c.path_source : "`" + c.path_source + "`"));
-    text += extent_table(c) + deposit_table(c) + bed_change_table(c);
+    if (c.extents)
+        text += fmt::format(
+            "Survey: `{}`. Simulated is every pixel of {:.6g} m deeper than {:.6g} m; the survey's area in each pixel "
+            "is "
+            "exact. The survey is the reference (true positive + false negative). Runout is the horizontal length "
+            "along "
+            "{} to the farthest point of each outline; reach is the straight distance from the path's start.\n\n",
+            c.survey, c.cell, c.limit,
+            c.path.empty()
+                ? std::string("no known path")
+                : (c.path_source.find("steepest") == 0 ? "the " + c.path_source : "`" + c.path_source + "`"));
+    if (c.extents) text += extent_table(c);
+    text += deposit_table(c) + bed_change_table(c);
     for (const std::string& remark : c.remarks) text += fmt::format("- {}\n", remark);
     return text + (c.remarks.empty() ? "" : "\n");
 }

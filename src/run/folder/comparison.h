@@ -27,11 +27,11 @@ Survey read_survey_files(const SurveyFiles& files, const Raster& like, std::vect
 /// compare.json as text: contract in the README. Numbers that do not exist are null.
 std::string comparison_json(const Comparison& comparison);
 
-/// compare.json in `run_dir` and, where changes of the bed were compared along a path, compare_bed_change.csv. For each
-/// step of the path that has distance, middle and volumes. Also what all steps so far gave less what they took.
+/// The scores as `json` and, where changes of the bed were compared along a path, NAME_bed_change.csv in `run_dir`. For
+/// each step of the path that has distance, middle and volumes. Also what all steps so far gave less what they took.
 /// UserError when they cannot be written.
-void write_scores(const std::filesystem::path& run_dir, const std::filesystem::path& json,
-                  const Comparison& comparison);
+void write_scores(const std::filesystem::path& run_dir, const std::filesystem::path& json, const Comparison& comparison,
+                  const std::string& name = "compare");
 
 /// The scores as a section of report.md: heading, tables, remarks. No picture.
 std::string comparison_section(const Comparison& comparison);

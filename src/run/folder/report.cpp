@@ -9,6 +9,7 @@
 #include "base/constants.h"
 #include "base/version.h"
 #include "run/folder/comparison.h"
+#include "run/folder/gauge_table.h"
 #include "run/folder/run_folder.h"
 #include "run/folder/run_record.h"
 #include "scene/build_scene.h"
@@ -178,6 +179,7 @@ std::string budgets(const RunRecord& r) {
     const RunSummary& s = r.summary;
     const Budget b = budget(s.first, s.last);
     const double came = mass_came_in(s.first, s.last);
+    const char* const net = came > 0.0 ? "net " : "";
     std::string text =
         "## Budgets\n\n| Balance | At the start | At the end | Left the domain | Residual |\n"
         "|---|---|---|---|---|\n";
@@ -193,14 +195,14 @@ std::string budgets(const RunRecord& r) {
     const double to_bed = s.last.bed.deposited - s.last.bed.eroded;
     if (to_bed != 0.0) text += fmt::format("| became bed, less what the bed gave [kg] | | {:.8g} | | |\n", to_bed);
     for (const std::size_t axis : {0, 1})
-        text += fmt::format("| momentum {} [kg m/s] | {:.4g} | {:.4g} (impulse {:.4g}) | {:.4g} | {:.1e} |\n",
+        text += fmt::format("| momentum {} [kg m/s] | {:.4g} | {:.4g} (impulse {:.4g}) | {}{:.4g} | {:.1e} |\n",
                             axis == 0 ? "x" : "y", s.first.momentum[axis], s.last.momentum[axis], s.last.impulse[axis],
-                            s.last.momentum_left[axis], b.momentum_residual[axis]);
-    text += fmt::format("| energy [J] | {:.5g} | {:.5g} | {:.4g} | {:.2e} |\n", s.first.kinetic + s.first.potential,
-                        s.last.kinetic + s.last.potential + s.last.stored, s.last.energy_left, b.energy_residual);
+                            net, s.last.momentum_left[axis], b.momentum_residual[axis]);
+    text += fmt::format("| energy [J] | {:.5g} | {:.5g} | {}{:.4g} | {:.2e} |\n", s.first.kinetic + s.first.potential,
+                        s.last.kinetic + s.last.potential + s.last.stored, net, s.last.energy_left, b.energy_residual);
     if (const double given = s.last.bed.energy - s.first.bed.energy; given != 0.0)
         text += fmt::format("| of it the bed gave [J] | | {:.5g} | | |\n", given);
-    if (came > 0.0) text += "\nOf momentum and energy, what came in is taken off what left.\n";
+    if (came > 0.0) text += "\nNet is what left less what came in: energy is negative where more came in than left.\n";
     text += fmt::format("\nOf the energy at the end, {:.4g} J are kinetic; {:.4g} J were dissipated.", s.last.kinetic,
                         s.last.dissipated);
     if (!r.of_water_alone())
@@ -448,7 +450,8 @@ std::string remarks(const RunRecord& r) {
 std::string report_markdown(const RunRecord& record, const std::filesystem::path& run_dir) {
     const std::vector<Product> products = products_in(run_dir);
     const std::string survey = record.comparison ? comparison_section(*record.comparison) : "";
-    return heading(record) + remarks(record) + results(record) + survey + sections(record) + barriers(record) +
+    return heading(record) + remarks(record) + results(record) + survey +
+           gauge_section(record.gauges, record.footprint_depth, run_dir) + sections(record) + barriers(record) +
            friction(record) + budgets(record) + figures(record) + parameter_table(record) + files(record, products) +
            times(record.summary);
 }

@@ -288,10 +288,10 @@ void add_sections(const FigureSource& source, Gallery& gallery) {
 }
 
 void add_bed_change(const FigureSource& source, Gallery& gallery) {
-    const fs::path file = source.run_dir / "compare_bed_change.csv";
+    const fs::path file = source.run_dir / (source.comparison + "_bed_change.csv");
     std::error_code none;
     if (!fs::exists(file, none)) return;
-    gallery.add({"figures/compare_bed_change.png",
+    gallery.add({fmt::format("figures/{}_bed_change.png", source.comparison),
                  "change of the ground along the path, simulated and surveyed: volumes in "
                  "steps of equal length"},
                 [&source, file](const fs::path& png, std::string& why_not) {

@@ -22,7 +22,8 @@ void add_sections(const FigureSource& source, Gallery& gallery);
 /// barriers/.
 void add_barriers(const FigureSource& source, Gallery& gallery);
 
-/// figures/compare_bed_change.png: changes of the ground along the path, from compare_bed_change.csv; nothing without it.
+/// figures/compare_bed_change.png, or as source.comparison names it: changes of the ground along the path, from
+/// compare_bed_change.csv; nothing without that.
 void add_bed_change(const FigureSource& source, Gallery& gallery);
 
 /// figures/budget_energy.png and budget_motion.png, from history.csv.

@@ -35,19 +35,14 @@ std::string crs_name(const std::string& wkt) {
     return from == std::string::npos || to == std::string::npos ? "" : wkt.substr(from + 1, to - from - 1);
 }
 
-/// Profiles, sections and inflows, which share a pen and its entry in the legend.
+/// Profiles, sections and inflows.
 void add_lines(const FigureSource& source, MapFigure& map) {
-    std::vector<std::string> kinds;
-    const auto add = [&](const char* kind, const std::vector<NamedLine>& lines) {
-        for (const NamedLine& line : lines)
-            if (!line.line.empty()) map.profiles.push_back(line);
-        if (!lines.empty()) kinds.emplace_back(kind);
+    const auto add = [&](const std::string& name, const Polyline& line, MapLine kind) {
+        if (!line.empty()) map.lines.push_back({name, line, kind});
     };
-    std::vector<NamedLine> profiles, sections;
-    for (const Profile& profile : source.profiles) profiles.push_back({profile.name, profile.line});
-    for (const Section& section : source.sections) sections.push_back({section.name, section.line});
-    add("profile", profiles), add("section", sections), add("inflow", inflow_plans(source.inflows));
-    map.profiles_are = fmt::format("{}", fmt::join(kinds, ", "));
+    for (const Profile& profile : source.profiles) add(profile.name, profile.line, MapLine::profile);
+    for (const Section& section : source.sections) add(section.name, section.line, MapLine::section);
+    for (const NamedLine& inflow : inflow_plans(source.inflows)) add(inflow.name, inflow.line, MapLine::inflow);
 }
 
 /// `extent`: the depth that says where the flow is, for a field that is no depth.
@@ -190,13 +185,12 @@ double expected_drawing_seconds(const Scene& scene, Index outputs, int threads) 
 void add_overlay(const FigureSource& source, Gallery& gallery) {
     const ProductRaster* peak = find_product(source.rasters, "peak_depth");
     if (!source.survey || peak == nullptr || source.bed.values.empty()) return;
-    gallery.add({"figures/compare.png", "simulated and surveyed extent"}, [&source, peak](const fs::path& png,
-                                                                                          std::string& why_not) {
+    const std::string file = fmt::format("figures/{}.png", source.comparison);
+    gallery.add({file, "simulated and surveyed extent"}, [&source, peak](const fs::path& png, std::string& why_not) {
         MapFigure map = map_of(source, *peak, "simulated and surveyed extent", nullptr);
         map.field_label = "peak depth [m]";
-        map.profiles.clear();
-        map.profiles_are = "runout path";
-        if (!source.runout_path.empty()) map.profiles.push_back({"runout path", source.runout_path});
+        map.lines.clear();
+        if (!source.runout_path.empty()) map.lines.push_back({"runout path", source.runout_path, MapLine::path});
         const Raster covered = *ever_covered(source.rasters);
         map.simulated = pixel_outline(covered, source.footprint_depth);
         const Overlap areas = overlap(covered, source.footprint_depth, rings_of(*source.survey));

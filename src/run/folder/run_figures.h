@@ -24,8 +24,9 @@ struct FigureSource {
     std::vector<ProductRaster> rasters;  ///< peak_depth, peak_speed, final_depth are drawn
     double footprint_depth = 0.1;        ///< [m]
     std::optional<Polygons> survey;
-    std::optional<Vec2> start;  ///< where material came in, where nothing lay at the start [m]
-    Polyline runout_path;       ///< drawn in the overlay with the survey; empty: none
+    std::optional<Vec2> start;           ///< where material came in, where nothing lay at the start [m]
+    Polyline runout_path;                ///< drawn in the overlay with the survey; empty: none
+    std::string comparison = "compare";  ///< names the pictures of the comparison, and its table of bed changes
     std::vector<Profile> profiles;
     std::vector<Gauge> gauges;
     std::vector<Section> sections;
@@ -54,7 +55,8 @@ double expected_drawing_seconds(const Scene& scene, Index outputs, int threads);
 void add_map(const FigureSource& source, const ProductRaster& product, const std::string& what,
              const ProductRaster* extent, Gallery& gallery);
 
-/// figures/compare.png: the simulated extent (all pixels of peak_depth above footprint_depth) and the surveyed one.
+/// figures/compare.png, or as `comparison` names it: the simulated extent (all pixels of peak_depth above
+/// footprint_depth) and the surveyed one.
 /// Nothing without a survey, the terrain or the peak depth.
 void add_overlay(const FigureSource& source, Gallery& gallery);
 

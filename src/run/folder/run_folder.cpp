@@ -67,8 +67,7 @@ const std::vector<ProductKind>& product_kinds() {
          "discharge through a line, the volume that passed it and its solid part, after every step", false},
         {"barriers", "[^.].*\\.csv",
          "run-up to a barrier and what went over it, of 3D points its forces and moments, after every step", false},
-        {"figures",
-         "((map|view|section|filmstrip|profile|gauges|sections|barrier|budget)_[^.].*|compare(_bed_change)?)\\.png",
+        {"figures", "((map|view|section|filmstrip|profile|gauges|sections|barrier|budget)_[^.].*|compare(_.+)?)\\.png",
          "figure", false},
         {"figures", "film_[^.].*\\.(mp4|gif)", "film", false},
         {"figures", "view\\.html", "the run in three dimensions and through time: open it in a browser", false},
@@ -78,8 +77,8 @@ const std::vector<ProductKind>& product_kinds() {
         {"insitu/*", "[^.].*_\\d+\\.(png|vtp|vtu)", "made while the case ran", true},
         {"states", ".*\\.pvsm", "ParaView state, File > Load State", false},
         {"states", "look\\.json", "colour ranges and cameras of the states", false},
-        {"", "compare\\.(json|md)", "comparison with a survey", false},
-        {"", "compare_bed_change\\.csv", "changes of the ground along the path, simulated and surveyed", false},
+        {"", "compare(_.+)?\\.(json|md)", "comparison with a survey", false},
+        {"", "compare_(.+_)?bed_change\\.csv", "changes of the ground along the path, simulated and surveyed", false},
         {"", "checkpoint\\.h5", "last state", false}};
     return kinds;
 }

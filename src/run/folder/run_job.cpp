@@ -35,6 +35,7 @@
 #include "run/folder/section_ends.h"
 #include "run/folder/states.h"
 #include "run/simulation.h"
+#include "scene/remarks.h"
 #include "scene/taken_of_bed.h"
 #include "terrain/part_of.h"
 #include "vtk_io/survey_vtp.h"
@@ -259,6 +260,7 @@ void add_friction(const Scene& scene, const Simulation& simulation, std::vector<
 }
 
 void close_record(RunRecord& record, const fs::path& run_dir) {
+    join_remarks_on_coordinates(record.warnings);
     write_text(run_dir / "report.md", report_markdown(record, run_dir));
     record.files = files_made(run_dir);
     write_text(run_dir / "run.json", run_json(record));  // last: until then it says which files are not the run's

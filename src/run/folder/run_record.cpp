@@ -11,6 +11,7 @@
 #include "run/folder/run_page.h"
 #include "scene/case_file.h"
 #include "scene/flow_start.h"
+#include "scene/remarks.h"
 
 namespace frana {
 namespace {
@@ -182,7 +183,9 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     record.page = asks_for_page(file);
     record.by_trees_alone = scene.forest && !scene.deposition;
     record.warnings = scene.log;
+    record.gauges = scene.gauges;
     record.inflows = inflow_places(file, scene.bed.crs_wkt, record.warnings);
+    join_remarks_on_coordinates(record.warnings);
     return record;
 }
 
@@ -211,17 +214,26 @@ std::string motion_text(const RunSummary& s) {
 /// Whether a rule, or the end of the time, stopped what was still in motion.
 bool stopped_in_motion(const RunSummary& s) { return s.ended_by_rule() && s.motion.fastest > 0.0; }
 
-/// Whether nothing was there at the start, and what is to come has not yet.
 bool nothing_came(const RunRecord& record) {
     const Status &first = record.summary.first, &last = record.summary.last;
     const bool to_come = record.extras.inflow || !record.extras.late.empty();
     return to_come && first.mass == 0.0 && last.mass == 0.0 && last.mass_in == 0.0;
 }
 
+bool more_to_come(const RunRecord& record) {
+    constexpr double kNone = 1e-9;  // of the tables: round-off of their sums
+    const auto& inflow = record.extras.inflow;
+    const auto waits = [](const LateEntry& late) { return late.at && !late.entered; };
+    return (inflow && inflow->tables - inflow->expected > kNone * inflow->tables) ||
+           std::any_of(record.extras.late.begin(), record.extras.late.end(), waits);
+}
+
 std::string reason_text(const RunRecord& record) {
     const RunSummary& summary = record.summary;
     const bool moves = stopped_in_motion(summary);
-    const char* const still = nothing_came(record) ? "no material has come in yet" : "nothing moves any more";
+    const char* const still = nothing_came(record)   ? "no material has come in yet"
+                              : more_to_come(record) ? "nothing moves, but not all material has come in yet"
+                                                     : "nothing moves any more";
     if (summary.reason == "until")
         return fmt::format("stopped by --until at {:.6g} of {:.6g} s; --resume goes on: {}", record.end,
                            record.whole_end, moves ? motion_text(summary) : still);
@@ -240,9 +252,12 @@ std::string reason_text(const RunRecord& record) {
 }
 
 /// Why the run ended, and what was in motion then.
-Json rest_json(const RunSummary& s) {
+Json rest_json(const RunRecord& record) {
+    const RunSummary& s = record.summary;
     return {{"reason", !s.ended_by_rule()     ? s.reason
                        : stopped_in_motion(s) ? "stopped by the rule"
+                       : nothing_came(record) ? "before any material came in"
+                       : more_to_come(record) ? "before all material came in"
                                               : "at rest"},
             {"moving_mass_share", s.motion.share()},
             {"faster_than", s.slow},
@@ -377,7 +392,7 @@ std::string run_json(const RunRecord& record) {
                  {"host_threads", std::thread::hardware_concurrency()},
                  {"threads", record.threads},
                  {"exit_reason", s.reason},
-                 {"rest", rest_json(s)},
+                 {"rest", rest_json(record)},
                  {"failure", s.failure_text},
                  {"simulated_time", s.last.time},
                  {"steps", s.steps},

@@ -65,6 +65,7 @@ struct RunRecord {
     std::vector<BarrierSource> barrier_sources;
     std::vector<ReleaseSource> release_sources;
     std::vector<InflowPlace> inflows;
+    std::vector<Gauge> gauges;
     std::optional<double> inflow_until;  ///< the last row of the only inflow's table that has come in [s]
     /// That the front is measured from.
     std::string front_origin = "the release's centre";
@@ -90,6 +91,11 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file);
 
 /// "the end of the simulated time", "interrupted", ... for people.
 std::string reason_text(const RunRecord& record);
+
+/// Whether nothing was there at the start, and what is to come has not yet.
+bool nothing_came(const RunRecord& record);
+/// Whether the run ended before all that inflows and releases of a later time are to bring.
+bool more_to_come(const RunRecord& record);
 
 /// Volume of the releases that entered after the start [m^3].
 double released_later(const RunRecord& record);

@@ -1,0 +1,53 @@
+#include "run/folder/gauge_table.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "observe/table.h"
+
+namespace frana {
+namespace {
+
+double largest(const std::vector<double>& values) {
+    double most = 0.0;
+    for (const double value : values) most = std::max(most, value);  // what is not a number counts as nothing
+    return most;
+}
+
+/// "| 12.5 s | 1.3 m | 8.2 m/s |"
+std::string flow_at(const Table& series, double footprint_depth) {
+    const std::vector<double>& depth = series.column("depth");
+    const auto first = std::find_if(depth.begin(), depth.end(), [&](double value) { return value > footprint_depth; });
+    const std::string arrival =
+        first == depth.end()
+            ? "not reached"
+            : fmt::format("{:.4g} s", series.column("t")[static_cast<std::size_t>(first - depth.begin())]);
+    return fmt::format("| {} | {:.4g} m | {:.4g} m/s |", arrival, largest(depth), largest(series.column("speed")));
+}
+
+}  // namespace
+
+std::string gauge_section(const std::vector<Gauge>& gauges, double footprint_depth,
+                          const std::filesystem::path& run_dir) {
+    if (gauges.empty()) return "";
+    std::string text =
+        "## Gauges\n\n| Gauge | x, y | Arrival | Largest depth | Largest speed |\n|---|---|---|---|---|\n";
+    for (const Gauge& gauge : gauges) {
+        std::string flow = "| no series | - | - |";
+        try {
+            flow = flow_at(read_table(run_dir / "gauges" / (gauge.name + ".csv")), footprint_depth);
+        } catch (const UserError&) {  // the run is worth more than a row of its report
+        }
+        text += fmt::format("| {} | {:.10g}, {:.10g} {}\n", gauge.name, gauge.point.x(), gauge.point.y(), flow);
+    }
+    return text + fmt::format(
+                      "\nThese are values of the series in `gauges/`, which have a row for each step, interpolated "
+                      "between the four nodes around the point; `rasters/` has the peaks of whole pixels, which may be "
+                      "larger or smaller. Arrival is the first time deeper than {:.4g} m (`output.footprint_depth`). "
+                      "The speed is along the bed.\n\n",
+                      footprint_depth);
+}
+
+}  // namespace frana

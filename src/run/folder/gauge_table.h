@@ -1,0 +1,17 @@
+#pragma once
+// What a run brought to the gauges of its case, for the report.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace frana {
+
+/// A section of report.md: place, arrival and largest values of each gauge, from the series in gauges/ that
+/// figures/gauges_flow.png draws. It has arrived once it is deeper than `footprint_depth` [m]. Empty without gauges. A
+/// gauge whose series cannot be read has a row that says so.
+std::string gauge_section(const std::vector<Gauge>& gauges, double footprint_depth,
+                          const std::filesystem::path& run_dir);
+
+}  // namespace frana
