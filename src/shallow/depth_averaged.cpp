@@ -250,6 +250,7 @@ NodeSums DepthAveraged::raise_surface() {
     timed_("filter", [&] {
         shock_pass(flow_);
         filter(flow_);
+        creep_filter_.pass(flow_, sums.max_depth);
     });
     lateral_pass(flow_, status_.dt > 0.0 ? status_.dt : longest_step());
     timed_("shoreline", [&] { shoreline(flow_); });

@@ -7,6 +7,7 @@
 #include "mpm/step_clock.h"
 #include "observe/frame_store.h"
 #include "run/simulation.h"
+#include "shallow/creep_filter.h"
 #include "shallow/erosion.h"
 #include "shallow/feed.h"
 #include "shallow/flow_ledger.h"
@@ -171,6 +172,7 @@ private:
     Flow flow_;
     std::unique_ptr<TransferKernel> transfer_;
     std::unique_ptr<GridUpdateKernel> grid_update_;
+    CreepFilter creep_filter_;
     Splitter splitter_;
     std::optional<Merger> merger_;    ///< nothing when the scheme does not merge
     std::optional<Erosion> erosion_;  ///< nothing when the bed is rock

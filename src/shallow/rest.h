@@ -69,8 +69,8 @@ void start_deposit(Flow& flow, int before, int after);
 void finish_deposit(Flow& flow);
 
 /// Before the passes over nodes: which tiles they visit. A change is felt 15 nodes away at most, that is in the next
-/// tile. (The margin's flags make 2, the filter 2, each of three sweeps along the shore 3, the grid update 2.) A
-/// tile that falls still is left only when friction holds it whatever the length of a step.
+/// tile. (The margin's flags make 2, the filter 2, each of three sweeps along the shore 3, the grid update 2. Where no
+/// shore is near, the filter's four more passes make 8.) A tile that falls still is left only when friction holds it whatever the length of a step.
 void choose_active(Flow& flow, const GridUpdateKernel& grid_update);
 
 /// What follows from Flow::in_reach when nothing sleeps: which nodes are near, and that passes visit all tiles.

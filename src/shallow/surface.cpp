@@ -10,9 +10,7 @@
 #include "shallow/two_cell_wave.h"
 
 namespace frana {
-namespace {
 
-/// Ghost nodes beyond walls take the surface, depth and wetness of their mirror nodes.
 void mirror_surface(Flow& flow) {
     if (!flow.walls) return;
     Nodes& nodes = flow.nodes;
@@ -25,6 +23,8 @@ void mirror_surface(Flow& flow) {
             nodes.flags[ghost] = nodes.flags[mirror];
         });
 }
+
+namespace {
 
 /// The velocity before the grid update beyond walls: mirrored, the normal component turned round.
 void mirror_velocity(Flow& flow) {

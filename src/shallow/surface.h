@@ -44,4 +44,7 @@ void shoreline(Flow& flow);
 /// linear surfaces. Held back at bores (shock_pass), where that wave must stay visible to the pressure that undoes it.
 void filter(Flow& flow);
 
+/// Ghost nodes beyond walls take the surface, depth and wetness of their mirror nodes.
+void mirror_surface(Flow& flow);
+
 }  // namespace frana

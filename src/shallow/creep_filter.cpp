@@ -1,0 +1,88 @@
+#include "shallow/creep_filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/simd.h"
+#include "shallow/surface.h"
+#include "shallow/tiles_around.h"
+#include "shallow/two_cell_wave.h"
+
+namespace frana {
+namespace {
+
+constexpr double kCellsAPass = 1.5;  ///< each pass begins at so many cells of depth more, and is whole as many later
+constexpr double kCreeps = 0.1;      ///< Froude number up to which flow creeps; from twice that on it does not
+/// Each pass reads two nodes farther. With more a change could be felt beyond the next tile (rest.h).
+constexpr int kMostPasses = 4;
+
+/// Whether no node within three is dry or of the margin. So a surface next to the margin is never filtered again.
+bool far_inside(const Nodes& nodes, Index k, Index up) {
+    for (Index n = -3; n <= 3; ++n) {
+        const std::uint8_t* flags = nodes.flags.data() + k + n * up;
+        if (!four_have(flags - 3, kWet, kMargin) || !four_have(flags, kWet, kMargin)) return false;
+    }
+    return true;
+}
+
+/// How much of pass `pass`, the first is 1, four nodes in a row get [1].
+Double4 shares_of(const Flow& flow, Index k, int pass) {
+    const Nodes& nodes = flow.nodes;
+    const Double4 none = {}, one = all(1.0), depth = load(&nodes.depth[k]);
+    Double4 share = min(max(depth * (1.0 / (kCellsAPass * flow.cell)) - double(pass), none), one);
+    if (!any(share > none)) return none;
+    for (int lane = 0; lane < 4; ++lane) {
+        if (!(share[lane] > 0.0)) continue;
+        const Pair& v = nodes.before[k + lane];
+        const double froude = std::sqrt((v.x * v.x + v.y * v.y) / (flow.gravity * depth[lane]));
+        const double creeps = std::clamp(2.0 - froude / kCreeps, 0.0, 1.0);
+        share[lane] *= creeps > 0.0 && far_inside(nodes, k + lane, flow.grid.stride()) ? creeps : 0.0;
+    }
+    return share;
+}
+
+/// The wave of two cells of four nodes far inside, as the first pass has it.
+Double4 wave_of_four(const double* e, Index up) {
+    const Double4 both = wave_of_row(wave_along<Double4>(e - 2, up), wave_along<Double4>(e + 2, up));
+    return wave_along<Double4>(e, 1) + wave_along<Double4>(e, up) - both;
+}
+
+}  // namespace
+
+void CreepFilter::find_tiles(const Flow& flow) {
+    creeps_.assign(flow.active.work.size(), 0), tiles_.clear();
+    for_each_work_tile(flow.active, [&](Index n, Index tile) {
+        Mask4 some = {};
+        for_each_four_of(flow.grid, tile, flow.active_nodes(tile),
+                         [&](Index k, Index, Index) { some |= shares_of(flow, k, 1) > Double4{}; });
+        creeps_[static_cast<std::size_t>(n)] = any(some);
+    });
+    for (std::size_t n = 0; n < creeps_.size(); ++n)
+        if (creeps_[n]) tiles_.push_back(flow.active.work[n]);
+}
+
+void CreepFilter::pass(Flow& flow, double max_depth) {
+    const int passes = std::min(kMostPasses, static_cast<int>(max_depth / (kCellsAPass * flow.cell)));
+    if (passes < 1 || !(flow.scheme.filter > 0.0)) return;
+    find_tiles(flow);
+    if (tiles_.empty()) return;
+    Nodes& nodes = flow.nodes;
+    const Index up = flow.grid.stride();
+    for (int pass = 1; pass <= passes; ++pass) {
+        for_each_in_parallel(tiles_, [&](Index tile) {
+            for_each_four_of(flow.grid, tile, flow.active_nodes(tile), [&](Index k, Index, Index) {
+                const Double4 none = {}, share = flow.scheme.filter * shares_of(flow, k, pass);
+                const bool some = any(share > none);
+                store(&nodes.wave_x[k], some ? share * wave_of_four(nodes.surface.data() + k, up) : none);
+            });
+        });
+        for_each_in_parallel(tiles_, [&](Index tile) {
+            for_each_four_of(flow.grid, tile, flow.active_nodes(tile), [&](Index k, Index, Index) {
+                store(&nodes.surface[k], load(&nodes.surface[k]) - load(&nodes.wave_x[k]));
+            });
+        });
+        mirror_surface(flow);
+    }
+}
+
+}  // namespace frana

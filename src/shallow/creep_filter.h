@@ -1,0 +1,24 @@
+#pragma once
+// More passes of the surface filter where a flow creeps that is deep beside its cells. THEORY.md, section 6.
+#include <cstdint>
+#include <vector>
+
+#include "shallow/flow.h"
+
+namespace frana {
+
+/// Slow material on cells much smaller than its depth is filtered again. Otherwise waves of particles that are shorter
+/// than two cells would grow there.
+class CreepFilter {
+public:
+    /// After filter(), before shoreline(). `max_depth`: of the flow [m]; below 1.5 cells nothing is done.
+    void pass(Flow& flow, double max_depth);
+
+private:
+    void find_tiles(const Flow& flow);
+
+    std::vector<std::uint8_t> creeps_;  ///< by position in the work list: has nodes that are filtered again
+    std::vector<Index> tiles_;          ///< those that have
+};
+
+}  // namespace frana
