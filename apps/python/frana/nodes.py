@@ -1,4 +1,4 @@
-"""What frames of a run and frames read back share: where their nodes and particles are, and copies for other packages."""
+"""What frames of a run and those read back share: where nodes and particles are, and copies for other packages."""
 from . import convert
 
 
