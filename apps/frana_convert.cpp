@@ -229,7 +229,7 @@ int convert_command(const ConvertOptions& options) {
     else
         write_points(options.out, format, table_of(points, state, density, options, conservation),
                      points.position.data());
-    const fs::path record = fs::path(options.out).replace_extension(".conservation.json");
+    const fs::path record = options.out.string() + ".conservation.json";
     write_text(record, record_json(state, options, conservation));
     std::cout << conservation_text(kept)
               << fmt::format("{} points of {} columns at {:.6g} s in {}\n{}\n", points.count(), columns.count(),

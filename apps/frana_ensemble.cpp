@@ -7,6 +7,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/shell_word.h"
 #include "frana_commands.h"
 #include "frana_progress_lines.h"
 #include "frana_run_teller.h"
@@ -94,19 +95,21 @@ int run_again(const EnsembleOptions& options, const EnsemblePlan& plan) {
                         file.string(), sample));
     fs::create_directories(folder);
     write_text(file, text);
-    std::cout << fmt::format("frana run {} --out {}\n", file.string(), (folder / "run").string());
+    std::cout << fmt::format("frana run {} --out {}\n", shell_word(file.string()),
+                             shell_word((folder / "run").string()));
     return 0;
 }
 
 /// A job array for Slurm: a shard a job, then the maps.
 int print_job(const EnsembleOptions& options) {
-    const std::string file = fs::absolute(options.file).string(), out = fs::absolute(options.out).string();
+    const std::string file = shell_word(fs::absolute(options.file).string()),
+                      out = shell_word(fs::absolute(options.out).string());
     std::cout << fmt::format(
         "#!/bin/sh\n#SBATCH --array=0-{0} --cpus-per-task=8 --signal=B:TERM@120 --requeue\n"
-        "# afterwards: sbatch --dependency=afterany:JOB --wrap \"frana ensemble '{1}' --join '{2}'\"\n"
-        "exec frana ensemble '{1}' --out '{2}' --shard \"$SLURM_ARRAY_TASK_ID/{3}\" \\\n"
+        "# afterwards: sbatch --dependency=afterany:JOB --wrap {4}\n"
+        "exec frana ensemble {1} --out {2} --shard \"$SLURM_ARRAY_TASK_ID/{3}\" \\\n"
         "     --threads \"$SLURM_CPUS_PER_TASK\" --resume\n",
-        options.slurm - 1, file, out, options.slurm);
+        options.slurm - 1, file, out, options.slurm, shell_word(fmt::format("frana ensemble {} --join {}", file, out)));
     return 0;
 }
 

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/shell_word.h"
 #include "frana_commands.h"
 #include "frana_figures.h"
 #include "io/gdal_reader.h"
@@ -19,6 +20,7 @@
 #include "run/folder/run_3d.h"
 #include "run/folder/run_film.h"
 #include "run/folder/run_folder.h"
+#include "run/folder/run_lock.h"
 #include "run/folder/run_page.h"
 #include "run/folder/run_state.h"
 #include "run/web/web_page.h"
@@ -61,15 +63,27 @@ std::vector<std::string> never_hit_in(const nlohmann::json& json) {
     return names;
 }
 
+/// Killed, or without room on the disk. Where file systems have no locks it may still go on.
+UserError broke_off(const fs::path& run_dir) {
+    const std::string out = shell_word(run_dir.string());
+    const bool saved = fs::exists(run_dir / "checkpoint.h5");
+    return UserError(fmt::format(
+        "{}: found a run that broke off before its end, and no process that goes on with it; expected a finished run; "
+        "{}",
+        run_dir.string(),
+        saved ? fmt::format("let it go on with `frana run CASE --out {} --resume`", out)
+              : fmt::format("it has saved no state, so run it again with `frana run CASE --out {} --overwrite`", out)));
+}
+
 /// The part of run.json that figures need.
 void read_record(const fs::path& run_dir, FigureSource& source) {
     const fs::path file = run_dir / "run.json";
     const auto json = nlohmann::json::parse(text_of(file), nullptr, false);
-    if (json.is_object() && json.value("exit_reason", nlohmann::json()) == "running")
-        throw UserError(
-            fmt::format("{}: found a run that has not ended; expected a finished one; wait for its end or, "
-                        "where it was killed, let it go on with `frana run CASE --out {} --resume`",
-                        run_dir.string(), run_dir.string()));
+    const auto reason = json.is_object() ? json.value("exit_reason", nlohmann::json()) : nlohmann::json();
+    if (reason == kRunning && is_run_going_on(run_dir))
+        throw UserError(fmt::format("{}: found a run that has not ended; expected a finished one; wait for its end",
+                                    run_dir.string()));
+    if (reason == kRunning || reason == kStopped) throw broke_off(run_dir);
     try {
         source.title = json.at("title").get<std::string>();
         source.footer = json.at("caption").get<std::string>();
@@ -332,11 +346,17 @@ int figures_command(const FiguresOptions& options) {
         add_film(source, options.film, gallery);
         add_film_3d(source, options.film, gallery);
     }
+    const std::size_t wanted = gallery.pictures();
     const std::vector<DrawnFigure> figures = gallery.draw(threads_for_figures(), warnings);
     for (const DrawnFigure& figure : figures) std::cout << (options.run_dir / figure.path).string() << '\n';
     join_remarks_on_coordinates(warnings);
     for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
-    if (!Cutoff::asked()) return 0;
+    if (!Cutoff::asked()) {
+        if (figures.empty() && wanted > 0)
+            throw UserError(fmt::format("{}: none of the {} pictures could be drawn; the warnings above tell why",
+                                        options.run_dir.string(), wanted));
+        return 0;
+    }
     interrupted();
     return 130;
 }

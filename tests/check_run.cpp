@@ -2,7 +2,7 @@
 // Lines of EXPECTED.csv: quantity,value,tolerance,unit,source. A quantity is
 //   budgets.mass.relative_error     a number of run.json; barriers.0.first_contact: of the first of a list
 //   compare/iou                     a number of compare.json
-//   convert/start/conservation.mass.relative_error   a number of convert/start.conservation.json
+//   convert/start/conservation.mass.relative_error   a number of convert/start.h5.conservation.json
 //   table/insitu/stress.csv/depth_max/last   last (or first, or the largest absolute: max) number of a column of a table,
 //                                   named without its unit
 //   history/max_speed/max           largest absolute value (or: last) of a column of history.csv
@@ -167,7 +167,7 @@ double obtained(const std::filesystem::path& run, const std::string& quantity) {
     if (path[0] == "profile") return from_profile(run, path);
     if (path[0] == "raster") return from_raster(run, path);
     if (path[0] == "table") return from_table(run, path);
-    if (path[0] == "convert") return from_json(run / "convert" / (path.at(1) + ".conservation.json"), path.at(2));
+    if (path[0] == "convert") return from_json(run / "convert" / (path.at(1) + ".h5.conservation.json"), path.at(2));
     if (path[0] == "compare") return from_json(run / "compare.json", path.at(1));
     return from_json(run / "run.json", quantity);
 }

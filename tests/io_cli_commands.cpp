@@ -13,6 +13,7 @@
 #include "catch.h"
 #include "checks/verify/library.h"
 #include "plane_case.h"
+#include "run/folder/run_lock.h"
 #include "scene/parameters.h"
 
 namespace fs = std::filesystem;
@@ -191,10 +192,26 @@ TEST_CASE("Pictures and scores of a run that has not ended are refused in one se
             CHECK(refused.code == 2);
             CHECK_FALSE(Contains("json.exception").match(refused.err));
             CHECK(std::count(refused.err.begin(), refused.err.end(), '\n') == 1);
-            if (std::string(record).find("running") != std::string::npos)
-                CHECK_THAT(refused.err, Contains("found a run that has not ended; expected a finished one; wait for"));
+            const bool begun = std::string(record).find("running") != std::string::npos;
+            if (begun) CHECK_THAT(refused.err, Contains("broke off before its end") && Contains("--overwrite"));
+            if (!begun) continue;
+            const frana::RunLock held(scene.folder() / "out");  // as a run that goes on does
+            const Outcome early = scene.frana(command);
+            CHECK(early.code == 2);
+            CHECK_THAT(early.err, Contains("found a run that has not ended; expected a finished one; wait for"));
         }
     }
+}
+
+TEST_CASE("figures that cannot write a single picture are an error", "[cli]") {
+    const PlaneCase scene;
+    REQUIRE(scene.frana("run CASE --quiet --out out").code == 0);
+    fs::remove_all(scene.folder() / "out/figures");
+    frana::write_text(scene.folder() / "out/figures", "a file where the folder of pictures belongs");
+    const Outcome none = scene.frana("figures out");
+    CHECK(none.code == 2);
+    CHECK(none.out.empty());
+    CHECK_THAT(none.err, Contains("was not drawn") && Contains("pictures could be drawn"));
 }
 
 TEST_CASE("check lists all problems of a bad case on stderr and is not ready", "[cli]") {

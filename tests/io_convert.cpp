@@ -74,7 +74,7 @@ TEST_CASE("HDF5 holds the points that the run's particles make, with pressure, s
     CHECK(hdf5_numbers(file, "time", true) == Numbers{1.0});
     CHECK(hdf5_numbers(file, "spacing", true) == Numbers{0.25});
 
-    const auto record = nlohmann::json::parse(text_of(finished_run().folder() / "points.conservation.json"));
+    const auto record = nlohmann::json::parse(text_of(finished_run().folder() / "points.h5.conservation.json"));
     for (const char* name : {"mass", "volume", "momentum_x", "momentum_y"}) {
         CHECK(record["conservation"][name]["relative_error"].get<double>() <= 1e-12);
         CHECK(record["conservation"][name]["worst_column"].get<double>() <= 1e-12);
@@ -141,7 +141,7 @@ TEST_CASE("A Kratos body of a run has its volume, and the material its density a
     CHECK(variables["DENSITY"].get<double>() == Approx(1300.0).epsilon(1e-12));
     CHECK(variables["DYNAMIC_VISCOSITY"] == 40.0);
     CHECK(variables["BULK_MODULUS"].get<double>() >= 1300.0 * 100.0 * 9.81);  // a metre of depth at least
-    CHECK(fs::exists(finished_run().folder() / "flow_Body.conservation.json"));
+    CHECK(fs::exists(finished_run().folder() / "flow_Body.mdpa.conservation.json"));
 }
 
 TEST_CASE("A run without VTK files, and one that has not ended, give the same points from run.h5", "[convert]") {

@@ -83,6 +83,8 @@ TEST_CASE("an ensemble of ponds has the probabilities and quantiles of their dep
         const Outcome again = pond.frana("ensemble many.toml --out many --again 7");
         REQUIRE(again.code == 0);
         CHECK_THAT(again.out, Contains("frana run many/sample_7/case.toml"));
+        const Outcome quoted = pond.frana("ensemble many.toml --out 'a folder' --again 7");
+        CHECK(quoted.out == "frana run 'a folder/sample_7/case.toml' --out 'a folder/sample_7/run'\n");
         CHECK(pond.frana("run many/sample_7/case.toml --out again --quiet --set 'output.formats=[\"geotiff\"]'").code ==
               0);
         std::string row = text_of(pond.path("many/samples.csv"));
@@ -362,6 +364,17 @@ TEST_CASE("an ensemble's forecast, job script and mistakes", "[ensemble]") {
     const Outcome script = pond.frana("ensemble many.toml --out many --slurm 40");
     CHECK(script.code == 0);
     CHECK_THAT(script.out, Contains("--array=0-39") && Contains("$SLURM_ARRAY_TASK_ID/40") && Contains("--join"));
+    const Outcome odd = pond.frana("ensemble many.toml --out \"it's \\$HOME of\" --slurm 2");
+    REQUIRE(odd.code == 0);
+    const std::string folder = fs::absolute(pond.path("it's $HOME of")).string();
+    const std::string lead = folder.substr(0, folder.size() - 11);  // up to the apostrophe
+    CHECK_THAT(odd.out, Contains(" --out '" + lead + "'\\''s $HOME of' --shard"));
+    const std::string mark = "# afterwards: ";
+    const std::size_t line = odd.out.find(mark) + mark.size();
+    pond.write("job.sh", "sbatch() { eval \"set -- $3\"; echo \"$5\"; }\n" +
+                             odd.out.substr(line, odd.out.find('\n', line) - line) + "\n");
+    REQUIRE(std::system(fmt::format("sh {0}/job.sh > {0}/words.txt", pond.path(".").string()).c_str()) == 0);
+    CHECK(text_of(pond.path("words.txt")) == folder + "\n");
     for (const char* shard : {"4/4", "5/4", "-1/4", "1", "a/b"}) {
         CAPTURE(shard);
         const Outcome wrong = pond.frana(std::string("ensemble many.toml --out many --shard=") + shard);

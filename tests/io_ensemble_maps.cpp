@@ -64,6 +64,8 @@ TEST_CASE("Gauges are outcomes of the ensemble, and maps of arrival tell when a 
     CHECK(most.values[pixel_at(most, 10, 30)] == 0.0);
     CHECK(std::isnan(most.values[pixel_at(most, 50, 30)]));
     CHECK_FALSE(fs::exists(pond.path("many/rasters/mean_arrival_time.tif")));
+    CHECK_THAT(pond.frana("ensemble --join many --exceed arrival_time=30").err,
+               Contains("expected FIELD=VALUE of peak_depth, since a late arrival is no greater hazard"));
     pond.write("many.toml", "[ensemble]\ncase = \"case.toml\"\nexceed = { arrival_time = [3] }\n" +
                                 two_outlines.substr(two_outlines.find("method")));
     CHECK_THAT(pond.frana("ensemble many.toml --out other").err, Contains("found a threshold of a time"));
@@ -101,21 +103,25 @@ TEST_CASE("Shares of a variance that cannot be are told to be of too few samples
     const std::string keys =
         "[[ensemble.vary]]\nkey = \"release.0.depth\"\nrange = [1.0, 2.0]\n"
         "[[ensemble.vary]]\nkey = \"material.density\"\nrange = [1000, 2000]\n";
-    for (const int samples : {5, 64}) {
+    for (const int samples : {4, 5, 64}) {
         CAPTURE(samples);
         const std::string out = "of_" + std::to_string(samples);
         pond.write("many.toml", "[ensemble]\ncase = \"case.toml\"\nmethod = \"saltelli\"\nquantiles = []\nsamples = " +
                                     std::to_string(samples) + "\n" + keys);
         REQUIRE(pond.frana("ensemble many.toml --quiet --out " + out).code == 0);
-        bool outside = false;
+        bool outside = false, crossed = false;
         const Json json = Json::parse(text_of(pond.path(out + "/ensemble.json")));
         for (const Json& outcome : json["sensitivity"])
             for (const Json& key : outcome)
-                for (const char* share : {"first_order", "total"})
+                for (const char* share : {"first_order", "total"}) {
                     outside = outside || key[share] < -0.005 || key[share] > 1.005;  // as the table shows them
+                    crossed = crossed || key["first_order"] > key["total"].get<double>() + 0.005;
+                }
         CHECK(outside == (samples == 5));
         const bool told = text_of(pond.path(out + "/report.md")).find("Shares below 0 or above 1") != std::string::npos;
         CHECK(told == outside);
+        CHECK(Contains("A first order above its total").match(text_of(pond.path(out + "/report.md"))) == crossed);
+        CHECK(crossed == (samples == 4));
     }
 }
 

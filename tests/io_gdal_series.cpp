@@ -5,6 +5,7 @@
 #include "fake_scene.h"
 #include "fresh_folder.h"
 #include "io/gdal_series.h"
+#include "observe/memory_archive.h"
 #include "read_layer.h"
 #include "small_disk.h"
 
@@ -30,6 +31,32 @@ TEST_CASE("shapes go on after a run is resumed, without those that come again", 
     CHECK(levels == std::map<double, double>{{0.0, 0.0}, {1.0, 11.0}, {1.5, 11.5}});
     REQUIRE(layer.get().GetSpatialRef());
     CHECK(layer.get().GetSpatialRef()->IsLocal());  // metres of nowhere, and no degrees
+}
+
+TEST_CASE("a state that is restored takes away what came after it, without another sample", "[insitu][gdal][resume]") {
+    const FreshFolder folder;
+    const fs::path file = folder.path() / "lines.gpkg";
+    const auto at = [](double t) { return std::vector<std::pair<double, Polyline>>{{t, {{0.0, 0.0}, {1.0, 2.0}}}}; };
+    MemoryArchive state;
+    {
+        ShapeSeries first(file, "");
+        for (const double t : {0.0, 2.0}) first.add_lines(t, at(t), "m");
+        first.serialize(state);
+        for (const double t : {3.0, 4.0}) first.add_lines(t, at(t), "m");
+    }
+    const auto times = [&] {
+        const Layer layer(file);
+        std::vector<double> all;
+        for (const OGRFeatureUniquePtr& feature : layer.get()) all.push_back(feature->GetFieldAsDouble("t_s"));
+        return all;
+    };
+    REQUIRE(times() == std::vector<double>{0.0, 2.0, 3.0, 4.0});
+    ShapeSeries again(file, "");
+    state.rewind();
+    again.serialize(state);
+    CHECK(times() == std::vector<double>{0.0, 2.0});
+    again.add_lines(3.5, at(3.5), "m");
+    CHECK(times() == std::vector<double>{0.0, 2.0, 3.5});
 }
 
 TEST_CASE("a full disk takes no shapes, and leaves those before", "[insitu][gdal]") {

@@ -226,3 +226,44 @@ TEST_CASE("Nothing covered gives an empty collection, and a threshold of NaN is 
 }
 
 TEST_CASE("The version is that of GDAL", "[gdal]") { CHECK(gdal_version().substr(0, 2) == "3."); }
+
+TEST_CASE("Outlines in a CRS without a code are written in degrees, at the same place", "[gdal]") {
+    const FreshFolder folder;
+    const auto file = folder.path() / "footprint.geojson";
+    Raster depth = covered({".##.", ".#..", "...."});
+    OGRSpatialReference own;
+    own.SetFromUserInput("+proj=tmerc +lat_0=0 +lon_0=9.00001 +k=0.9996 +x_0=500000 +y_0=0 +ellps=WGS84");
+    char* text = nullptr;
+    own.exportToWkt(&text);
+    depth.crs_wkt = text;
+    CPLFree(text);
+    REQUIRE(footprint_place(depth.crs_wkt) == FootprintPlace::degrees);
+    CHECK(footprint_place(utm32()) == FootprintPlace::named);
+    CHECK(footprint_place("") == FootprintPlace::unnamed);
+    write_footprint(file, depth, 0.1);
+    const gdal::Dataset dataset = gdal::open(file, GDAL_OF_VECTOR);
+    OGRLayer& layer = *dataset->GetLayer(0);
+    REQUIRE(layer.GetSpatialRef());
+    CHECK(layer.GetSpatialRef()->IsGeographic());
+    OGREnvelope box;
+    REQUIRE(layer.GetExtent(&box) == OGRERR_NONE);
+    CHECK((box.MinX > 7.0 && box.MaxX < 8.5 && box.MinY > 61.5 &&
+           box.MaxY < 62.5));  // where 408 km 6870 km of UTM 32 are
+    std::vector<std::string> log;
+    const Polygons back = GdalReader().read_polygons(file, depth.crs_wkt, log);
+    REQUIRE(back.parts.size() == 1);
+    double low = 1e300, high = -1e300, area = 0.0;
+    const auto& ring = back.parts[0].rings[0];
+    for (std::size_t k = 0, last = ring.size() - 1; k < ring.size(); last = k++) {
+        low = std::min(low, ring[k].x()), high = std::max(high, ring[k].x());
+        const Vec2 origin(408400.0, 6870086.0), a = ring[last] - origin, b = ring[k] - origin;
+        area += 0.5 * (a.x() * b.y() - b.x() * a.y());
+    }
+    // Written to 1e-12 degrees and brought back by the inverse series of PROJ: 1e-5 m is far more than both.
+    CHECK(low == Approx(408402.75).margin(1e-5));
+    CHECK(high == Approx(408412.75).margin(1e-5));
+    CHECK(std::abs(area) == Approx(75.0).margin(1e-3));
+    CHECK(layer.GetFeature(1) == nullptr);
+    const OGRFeatureUniquePtr feature(layer.GetFeature(0));
+    CHECK(feature->GetFieldAsDouble("area_m2") == 75.0);
+}

@@ -177,7 +177,7 @@ TEST_CASE("Rasters are nodata outside the flow, keep zero inside of it, and read
     CHECK(back.at(g.nx - 1, g.ny - 1) == 0.0);
 }
 
-TEST_CASE("A CRS without a code is remarked upon, since footprint.geojson cannot name it", "[gis]") {
+TEST_CASE("A CRS without a code is remarked upon: footprint.geojson cannot name it, and is in degrees", "[gis]") {
     const Slope slope;
     const auto warnings = [&](const char* out) {
         return nlohmann::json::parse(text_of(slope.run(out) / "run.json"))["warnings"].dump();
@@ -188,7 +188,7 @@ TEST_CASE("A CRS without a code is remarked upon, since footprint.geojson cannot
     dem.crs_wkt = wkt_of("+proj=tmerc +lat_0=0 +lon_0=9.00001 +k=0.9996 +x_0=500000 +y_0=0 +ellps=WGS84");
     write_geotiff(slope.path() / "dem.tif", dem, "m", "a slope");
     CHECK_THAT(warnings("custom"), Contains("footprint.geojson: found a CRS without an EPSG code") &&
-                                       Contains("open results.gpkg, which names it"));
+                                       Contains("in longitude and latitude (WGS 84)"));
 }
 
 TEST_CASE("A resumed run leaves the same bytes for a GIS; SOURCE_DATE_EPOCH dates its rasters", "[gis][resume]") {

@@ -115,6 +115,31 @@ TEST_CASE("A GIS gets the outlines of all releases, with what entered and when",
     CHECK(outlines[2]->GetFieldAsDouble("entered_s") == 3.3);
 }
 
+TEST_CASE("A release of several polygons is one row of a GIS, with the volume and the area of all",
+          "[program][late][gis]") {
+    const Releases plane;
+    write_text(plane.folder() / "timed.geojson",
+               R"({"type": "Feature", "properties": {}, "geometry": {"type": "MultiPolygon", "coordinates": [
+                  [[[100, 40], [110, 40], [110, 60], [100, 60], [100, 40]]],
+                  [[[112, 40], [120, 40], [120, 60], [112, 60], [112, 40]]]]}})");
+    const fs::path dir = plane.folder() / "out";
+    REQUIRE(plane.frana("run CASE --quiet --set 'output.formats=[\"geotiff\"]' --out " + dir.string()).code == 0);
+    const Layer layer(dir / "results.gpkg", "release");
+    std::vector<OGRFeatureUniquePtr> rows;
+    for (OGRFeatureUniquePtr& feature : layer.get()) rows.push_back(std::move(feature));
+    REQUIRE(rows.size() == 4);
+    const int parts[] = {1, 1, 2, 1};
+    const double areas[] = {1200.0, 800.0, 360.0, 25.0};
+    for (int n = 0; n < 4; ++n) {
+        OGRFeature& row = *rows[static_cast<std::size_t>(n)];
+        CAPTURE(n);
+        CHECK(row.GetFieldAsInteger("release") == n);
+        CHECK(row.GetGeometryRef()->toMultiPolygon()->getNumGeometries() == parts[n]);
+        CHECK(row.GetFieldAsDouble("area_m2") == Approx(areas[n]).epsilon(1e-12));
+        CHECK(row.GetFieldAsDouble("volume_m3") == Approx(1.5 * areas[n]).epsilon(1e-12));
+    }
+}
+
 TEST_CASE("Ground under releases is left out of a comparison with two surveys, under later ones too",
           "[program][late][compare]") {
     const Releases plane;

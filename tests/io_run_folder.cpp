@@ -1,4 +1,5 @@
 #include <chrono>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "base/error.h"
@@ -6,9 +7,11 @@
 #include "fresh_folder.h"
 #include "run/folder/run_folder.h"
 #include "run/folder/run_lock.h"
+#include "run/folder/run_record.h"
 
 using namespace frana;
 namespace fs = std::filesystem;
+using Json = nlohmann::json;
 
 namespace {
 
@@ -144,4 +147,48 @@ TEST_CASE("the lock of a run does not follow a link") {
     fs::create_symlink(folder.path() / "letter.txt", folder.path() / ".frana.lock");
     CHECK_THROWS_WITH(RunLock(folder.path()), Catch::Contains("found a link") && Catch::Contains("--out"));
     CHECK(text_of(folder.path() / "letter.txt") == "text");
+}
+
+TEST_CASE("the record of a run that breaks off no longer says that the run goes on") {
+    const FreshFolder folder;
+    const fs::path run = folder.path() / "out", record = run / "run.json";
+    const auto reason = [&] { return Json::parse(text_of(record))["exit_reason"].get<std::string>(); };
+    prepare_run_folder(run);
+    REQUIRE(reason() == "running");
+    const std::uintmax_t size = fs::file_size(record);
+    {
+        const OpenRecord open(run);
+        CHECK(reason() == "running");
+    }
+    CHECK(reason() == "stopped");
+    CHECK(fs::file_size(record) == size);  // in place: a full disk allows nothing else
+    list_as_made(run, {"history.csv"});
+    const std::string whole = text_of(record);
+    { const OpenRecord open(run); }
+    CHECK(text_of(record) == whole);
+    fs::remove(record);
+    { const OpenRecord open(run); }
+    CHECK_FALSE(fs::exists(record));
+}
+
+TEST_CASE("a lock that is held is a run that goes on, a file that was left behind is none") {
+    const FreshFolder folder;
+    const fs::path run = folder.path() / "out";
+    CHECK_FALSE(is_run_going_on(run));
+    {
+        const RunLock lock(run);
+        CHECK(is_run_going_on(run));
+    }
+    touch(run / ".frana.lock");
+    CHECK_FALSE(is_run_going_on(run));
+}
+
+TEST_CASE("round-off below zero is nothing that left the domain") {
+    const FreshFolder folder;
+    RunRecord record;
+    record.density = 1000.0;
+    record.summary.last.mass_left = -7e-10;
+    CHECK_THAT(report_markdown(record, folder.path()), Catch::Contains("| left the domain | 0 m3 |"));
+    record.summary.last.mass_left = 2000.0;
+    CHECK_THAT(report_markdown(record, folder.path()), Catch::Contains("| left the domain | 2 m3 |"));
 }

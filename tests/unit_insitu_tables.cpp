@@ -74,6 +74,23 @@ struct SmallFrame {
 
 }  // namespace
 
+TEST_CASE("Nodes that the flow never came to are in no statistics and on no line of arrivals", "[insitu]") {
+    SmallFrame small_frame;
+    std::vector<double> arrival(12, -1.0);
+    arrival[5] = 2.0, arrival[6] = 3.0;
+    small_frame.frame.nodes.push_back({"arrival_time", "s", 1, arrival.data(), 12});
+    const FreshFolder folder;
+    const fs::path csv = folder.path() / "reduce.csv";
+    make_reduction(csv, {"arrival_time"}, 0.1)->sample(small_frame.frame, 0);  // nodes 1 to 7 are deeper
+    const Table table = read_table(csv);
+    CHECK(table.column("arrival_time_min").at(0) == 2.0);
+    CHECK(table.column("arrival_time_max").at(0) == 3.0);
+    CHECK(table.column("arrival_time_mean").at(0) == 2.5);
+    const Scalar values = scalar(small_frame.frame.nodes, "arrival_time", "the grid");
+    CHECK(value_at(values, small, {103.0, 202.0}) == Approx(2.5));  // between nodes 5 and 6
+    CHECK(std::isnan(value_at(values, small, {101.0, 202.0})));     // between nodes 4 and 5
+}
+
 TEST_CASE("Without times of its own, in-situ samples at every output", "[insitu]") {
     CHECK(looks({}) == std::vector<double>{0.0, 0.5, 1.0});
 }

@@ -2,8 +2,10 @@
 #include "apps/frana_compare.h"
 #include "base/error.h"
 #include "bindings.h"
+#include "io/gdal_reader.h"
 #include "io/gdal_writer.h"
 #include "run/folder/products.h"
+#include "scene/case_file.h"
 #include "vtk_io/reader.h"
 
 namespace frana {
@@ -52,6 +54,20 @@ py::tuple particle_frame(const std::string& dir, Index number) {
     return py::make_tuple(frame.time, columns_of(frame.columns, frame.components, frame.units, {frame.count}));
 }
 
+/// Of a run's rasters or, before there are some, of its terrain. A terrain that has gone tells nothing.
+std::string crs_of_folder(const std::filesystem::path& dir) {
+    try {
+        const std::filesystem::path written = dir / "rasters" / "peak_depth.tif", keys = dir / "resolved.toml";
+        return crs_of_raster(std::filesystem::exists(written) ? written : CaseFile::read(keys).path("terrain.dem"));
+    } catch (const UserError&) {
+        return {};
+    }
+}
+
+std::string crs_in(const std::string& dir) {
+    return aside([&] { return crs_of_folder(dir); });
+}
+
 py::list rasters_in(const std::string& dir) {
     const std::vector<ProductRaster> rasters = aside([&] { return read_rasters(dir); });
     py::list all;
@@ -91,6 +107,7 @@ void bind_folder(py::module_& module) {
     module.def("particle_times", [](const std::string& dir) { return aside([&] { return particle_times(dir); }); });
     module.def("grid_frame", &grid_frame);
     module.def("particle_frame", &particle_frame);
+    module.def("crs_in", &crs_in);
     module.def("rasters_in", &rasters_in);
     module.def("compared", &compared);
     module.def("save_raster", &save_raster);

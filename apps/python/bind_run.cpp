@@ -144,14 +144,15 @@ public:
     }
     /// As it is now, north row first, read-only.
     py::tuple bed() {
-        const Session& session = standing();
-        if (const Frame* const frame = session.frame()) return bed_of(*frame);
-        Simulation* const simulation = session.simulation();
-        if (!simulation)
-            throw std::runtime_error("the run is over; its last bed is in a frame of its folder, or in result.rasters");
-        alone();  // a frame is made of what a step works on
-        const Busy busy(busy_);
-        return bed_of(aside([&] { return simulation->frame(); }));
+        return of_present_frame([this](const Frame& frame) { return bed_of(frame); });
+    }
+    /// Likewise, the elevation model's heights.
+    py::tuple ground() {
+        return of_present_frame([this](const Frame& frame) {
+            const std::optional<Raster> ground = session_->ground_of(frame);
+            if (!ground) throw std::runtime_error("the frames of this case are on other nodes than its terrain");
+            return north_up(*ground);
+        });
     }
     /// Ends the run where it is, unless it is over. What went wrong meanwhile comes through, once.
     void close() {
@@ -190,6 +191,18 @@ private:
                 columns.depth.push_back(volume / (size * size));
                 columns.size.push_back(edge);
             }
+    }
+
+    template <class Make>
+    py::tuple of_present_frame(const Make& make) {
+        const Session& session = standing();
+        Simulation* const simulation = session.simulation();
+        if (!simulation)
+            throw std::runtime_error("the run is over; its last bed is in a frame of its folder, or in result.rasters");
+        if (const Frame* const frame = session.frame()) return make(*frame);
+        alone();  // a frame is made of what a step works on
+        const Busy busy(busy_);
+        return make(aside([&] { return simulation->frame(); }));
     }
 
     py::tuple bed_of(const Frame& frame) const {
@@ -357,6 +370,7 @@ void bind_run(py::module_& module) {
         .def("close", &Run::close)
         .def("add_mass", &Run::add_mass)
         .def("bed", &Run::bed)
+        .def("ground", &Run::ground)
         .def_property_readonly("cell", [](const Run& run) { return run.session().cell(); })
         .def_property_readonly("crs", [](const Run& run) { return run.session().crs(); })
         .def_property_readonly("over", &Run::over)

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "run/folder/run_job.h"
+#include "terrain/part_of.h"
 
 namespace frana {
 
@@ -82,6 +83,18 @@ bool Session::wait(std::chrono::milliseconds time) {
     return changed_.wait_for(lock, time, [this] { return state_ != State::runs; });
 }
 
+std::optional<Raster> Session::ground_of(const Frame& frame) const {
+    const Raster& all = simulation_->ground() != nullptr ? *simulation_->ground() : scene_->bed;
+    const std::optional<NodeBox> shown = box_of(frame.grid, all.geometry);
+    if (!shown) return {};
+    Raster ground = part_of(all, *shown);
+    ground.crs_wkt = crs_;
+    const Field* const change = scene_->bed_evolves() ? frame.node("bed_change") : nullptr;
+    if (change == nullptr) return ground;
+    for (std::size_t n = 0; n < ground.values.size(); ++n) ground.values[n] += change->data[n];
+    return ground;
+}
+
 /// On the run's thread.
 void Session::stand(State state) {
     std::unique_lock<std::mutex> lock(mutex_);
@@ -108,14 +121,14 @@ void Session::work() {
     } catch (...) {
         failure_ = std::current_exception();
     }
-    simulation_ = nullptr;
+    simulation_ = nullptr, scene_ = nullptr;
     const std::lock_guard<std::mutex> lock(mutex_);
     state_ = State::over;
     changed_.notify_all();
 }
 
 void Session::begin(const Scene& scene, Simulation& simulation) {
-    simulation_ = &simulation;
+    simulation_ = &simulation, scene_ = &scene;
     status_ = simulation.status();
     planned_end_ = scene.end, density_ = scene.density, cell_ = scene.bed.geometry.cell, crs_ = scene.bed.crs_wkt;
     stand(State::ready);

@@ -71,6 +71,9 @@ public:
     double density() const { return density_; }      ///< of the case [kg/m3]
     double cell() const { return cell_; }            ///< of the case [m]
     const std::string& crs() const { return crs_; }  ///< of the case, WKT
+    /// The elevation model's heights on the nodes of a frame, with the bed's change in it [m]. Unlike the frame's own
+    /// "elevation" they are not averaged. Before it is `over`; nothing where the frame is on other nodes.
+    std::optional<Raster> ground_of(const Frame& frame) const;
     /// nullptr before it is `ready` and once it is `over`.
     Simulation* simulation() const { return simulation_; }
     const std::vector<std::string>& remarks() const { return record_.warnings; }
@@ -100,6 +103,7 @@ private:
     std::atomic<bool> pause_{false}, ending_{false};
 
     Simulation* simulation_ = nullptr;
+    const Scene* scene_ = nullptr;  ///< as long as there is a simulation
     const Frame* frame_ = nullptr;
     Index frames_ = 0;
     std::shared_ptr<FrameMemory> memory_ = std::make_shared<FrameMemory>();

@@ -278,13 +278,20 @@ void add_exceedance(EnsemblePlan& plan, const std::string& argument) {
     const auto equals = argument.find('=');
     const std::string field = argument.substr(0, equals);
     const auto value = number_in(equals == std::string::npos ? "" : argument.substr(equals + 1));
-    const bool known =
-        field != "arrival_time" && std::find(plan.fields.begin(), plan.fields.end(), field) != plan.fields.end();
+    std::vector<std::string> fields = plan.fields;
+    fields.erase(std::remove(fields.begin(), fields.end(), "arrival_time"), fields.end());
+    if (field == "arrival_time" && fields.size() < plan.fields.size())
+        throw UserError(fmt::format(
+            "--exceed: found \"{}\"; expected FIELD=VALUE of {}, since a late arrival is no greater hazard; how likely "
+            "the "
+            "flow arrives at all is in rasters/probability_reached.tif, and when in the quantiles of arrival_time",
+            argument, listed(fields)));
+    const bool known = std::find(fields.begin(), fields.end(), field) != fields.end();
     if (!known || !value || !(*value >= 0.0 && std::isfinite(*value)))
         throw UserError(
             fmt::format("--exceed: found \"{}\"; expected FIELD=VALUE with a number from 0 on and {}; "
                         "write it like peak_depth=1.3",
-                        argument, listed(plan.fields)));
+                        argument, listed(fields)));
     plan.exceed[field].push_back(*value);
 }
 

@@ -134,4 +134,9 @@ std::function<Raster(const NodeBox&)> GdalReader::read_dem_later(const std::file
     };
 }
 
+std::string crs_of_raster(const std::filesystem::path& file) {
+    std::vector<std::string> log;
+    return gdal::horizontal_wkt(RasterFile(file, gdal::Meaning::any, log).crs());
+}
+
 }  // namespace frana

@@ -92,6 +92,12 @@ std::unique_ptr<OGRGeometry> geometry_of(const Polygon& polygon) {
     return shape;
 }
 
+std::unique_ptr<OGRGeometry> geometry_of(const Polygons& polygons) {
+    auto shape = std::make_unique<OGRMultiPolygon>();
+    for (const Polygon& part : polygons.parts) shape->addGeometryDirectly(geometry_of(part).release());
+    return shape;
+}
+
 std::unique_ptr<OGRGeometry> geometry_of(const Polyline& line) {
     auto shape = std::make_unique<OGRLineString>();
     for (const Vec2& v : line) shape->addPoint(v.x(), v.y());
@@ -106,8 +112,17 @@ struct KindOfShape {
     const char* column;  ///< a name that no attribute has
     OGRwkbGeometryType type;
 };
-constexpr KindOfShape kKinds[] = {
-    {"frana_polygon", wkbPolygon}, {"frana_line", wkbLineString}, {"frana_point", wkbPoint}};
+constexpr KindOfShape kKinds[] = {{"frana_polygon", wkbPolygon},
+                                  {"frana_line", wkbLineString},
+                                  {"frana_point", wkbPoint},
+                                  {"frana_polygon", wkbMultiPolygon}};
+
+/// Of the shapes of a layer: several polygons where one of them is.
+const KindOfShape& kind_of(const std::vector<AttributedShape>& shapes) {
+    std::size_t kind = 0;
+    for (const AttributedShape& shape : shapes) kind = std::max(kind, shape.shape.index());
+    return kKinds[kind];
+}
 
 OGRLayer* make_layer(GDALDataset& dataset, const ShapeLayer& shapes, const std::string& crs_wkt,
                      const std::vector<FieldOfLayer>& fields) {
@@ -116,7 +131,7 @@ OGRLayer* make_layer(GDALDataset& dataset, const ShapeLayer& shapes, const std::
         crs.SetLocalCS("local metres");  // without any the file would claim degrees
     else
         crs = gdal::crs_from_wkt(crs_wkt);
-    const KindOfShape& kind = kKinds[shapes.shapes.front().shape.index()];
+    const KindOfShape& kind = kind_of(shapes.shapes);
     CPLStringList options;
     options.SetNameValue("FID", "frana_feature");
     options.SetNameValue("GEOMETRY_NAME", kind.column);
@@ -135,7 +150,9 @@ bool fill(OGRLayer& layer, const std::vector<FieldOfLayer>& fields, const std::v
             for (std::size_t k = 0; k < fields.size(); ++k)
                 if (lower(fields[k].name) == lower(attribute.first))
                     set_field(*feature, static_cast<int>(k), fields[k].type, attribute.second);
-        const auto geometry = std::visit([](const auto& held) { return geometry_of(held); }, shape.shape);
+        auto geometry = std::visit([](const auto& held) { return geometry_of(held); }, shape.shape);
+        if (layer.GetGeomType() == wkbMultiPolygon)
+            geometry.reset(OGRGeometryFactory::forceToMultiPolygon(geometry.release()));
         feature->SetGeometry(geometry.get());
         if (layer.CreateFeature(feature.get()) != OGRERR_NONE) return false;
     }

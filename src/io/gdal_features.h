@@ -24,13 +24,13 @@ struct AttributedPolygon {
 std::vector<AttributedPolygon> read_attributed_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
                                                         std::vector<std::string>& log);
 
-/// A polygon, a line or a point of the map with what is known of it.
+/// A polygon, a line, a point or several polygons of the map with what is known of it.
 struct AttributedShape {
-    std::variant<Polygon, Polyline, Vec2> shape;
+    std::variant<Polygon, Polyline, Vec2, Polygons> shape;
     std::vector<std::pair<std::string, Attribute>> attributes;
 };
 
-/// Shapes of one kind.
+/// Shapes of one kind; polygons go with several of them.
 struct ShapeLayer {
     std::string name;
     std::vector<AttributedShape> shapes;

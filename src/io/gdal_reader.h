@@ -75,6 +75,9 @@ public:
                        std::vector<std::string>& log) const override;
 };
 
+/// WKT of a raster's map coordinates, without those of heights; empty: none or local ones. UserError: no raster.
+std::string crs_of_raster(const std::filesystem::path& file);
+
 /// Version of the GDAL library in use, such as "3.6.2".
 std::string gdal_version();
 

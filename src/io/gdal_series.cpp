@@ -42,17 +42,43 @@ OGRLayer* make_layer(GDALDataset& dataset, const std::string& name, const std::s
     return good ? layer : nullptr;
 }
 
-/// Takes away what is not earlier than `time`.
-bool forget_from(OGRLayer& layer, double time) {
+/// Takes away what is later than `time` and, unless `itself` stays, what is of that time.
+bool forget_from(OGRLayer& layer, double time, bool itself) {
     std::vector<GIntBig> late;
-    for (const OGRFeatureUniquePtr& feature : layer)
-        if (!(feature->GetFieldAsDouble("t_s") < time)) late.push_back(feature->GetFID());
+    for (const OGRFeatureUniquePtr& feature : layer) {
+        const double t = feature->GetFieldAsDouble("t_s");
+        if (!(itself ? t <= time : t < time)) late.push_back(feature->GetFID());
+    }
     for (const GIntBig id : late)
         if (layer.DeleteFeature(id) != OGRERR_NONE) return false;
     return true;
 }
 
 }  // namespace
+
+void ShapeSeries::serialize(Archive& archive) {
+    archive.number("last", last_);
+    if (!archive.loading()) return;
+    begun_ = true;
+    has_later_ = !forget_later();
+}
+
+/// False when the file cannot be changed.
+bool ShapeSeries::forget_later() {
+    std::error_code failure;
+    if (!fs::exists(gpkg_, failure)) return true;
+    gdal::register_drivers();
+    const gdal::Messages messages;
+    gdal::Dataset dataset(GDALDataset::Open(gpkg_.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE));
+    OGRLayer* layer = dataset ? dataset->GetLayer(0) : nullptr;
+    if (!layer || dataset->StartTransaction() != OGRERR_NONE) return false;
+    if (!forget_from(*layer, last_, true) || dataset->CommitTransaction() != OGRERR_NONE) {
+        dataset->RollbackTransaction();
+        return false;
+    }
+    dataset.reset();
+    return !messages.failed();
+}
 
 template <class Fill>
 void ShapeSeries::add(double time, bool lines, const Fill& fill) {
@@ -70,14 +96,15 @@ void ShapeSeries::add(double time, bool lines, const Fill& fill) {
     gdal::Dataset dataset(GDALDataset::Open(gpkg_.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE));
     OGRLayer* layer = dataset ? dataset->GetLayer(0) : nullptr;
     if (!layer || dataset->StartTransaction() != OGRERR_NONE) refuse(gpkg_, messages);
-    const bool good = (begun_ || forget_from(*layer, time)) && fill(*layer) && !messages.failed();
+    const bool clean = has_later_ ? forget_from(*layer, last_, true) : begun_ || forget_from(*layer, time, false);
+    const bool good = clean && fill(*layer) && !messages.failed();
     if (!good || dataset->CommitTransaction() != OGRERR_NONE) {
         dataset->RollbackTransaction();
         refuse(gpkg_, messages);
     }
     dataset.reset();
     if (messages.failed()) refuse(gpkg_, messages);
-    begun_ = true;
+    begun_ = true, has_later_ = false, last_ = time;
 }
 
 void ShapeSeries::add_lines(double time, const std::vector<std::pair<double, Polyline>>& level_and_line,

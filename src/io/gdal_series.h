@@ -6,14 +6,15 @@
 #include <utility>
 #include <vector>
 
+#include "observe/archive.h"
 #include "terrain/raster.h"
 
 namespace frana {
 
 /// A GeoPackage with one layer that grows through a run. GeoPackage and not GeoJSON, because that standard (RFC 7946)
 /// allows longitude and latitude only. A GeoPackage has any CRS and holds all times in one file. Each call adds all its
-/// shapes or none (a transaction). The first one makes the file. From an older one (of a run that is resumed) it takes
-/// away what is not earlier. UserError when the disk refuses, NumericsError for a place that is not finite.
+/// shapes or none (a transaction). The first one makes the file. From an older one it takes away what is not earlier,
+/// unless a state was restored. UserError when the disk refuses, NumericsError for a place that is not finite.
 class ShapeSeries {
 public:
     /// `crs_wkt` of the coordinates, or empty: local metres; the layer has the name of the file.
@@ -27,13 +28,20 @@ public:
     /// 0 south. Cells that touch only at a corner belong to different ones. Attributes t_s, area_m2.
     void add_cells(double time, const GridGeometry& grid, std::vector<std::uint8_t>& cells);
 
+    /// Saves how far it is. A state that is restored takes away at once what came later: a run may end without another
+    /// call. What goes wrong with that shows in the next call.
+    void serialize(Archive& archive);
+
 private:
+    bool forget_later();
     template <class Fill>
     void add(double time, bool lines, const Fill& fill);
 
     std::filesystem::path gpkg_;
     std::string crs_wkt_;
     bool begun_ = false;
+    double last_ = -1.0;      ///< time of the last call; -1: none yet [s]
+    bool has_later_ = false;  ///< the file may have what came after the state that was restored
 };
 
 }  // namespace frana

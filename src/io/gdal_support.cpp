@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "base/error.h"
+#include "base/shell_word.h"
 
 namespace frana::gdal {
 
@@ -94,13 +95,7 @@ std::string taken_from_memory(const std::string& held) {
                  : std::string();
 }
 
-std::string shell(const std::string& text) {
-    const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./:,=@%";
-    if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
-    std::string quoted = "'";
-    for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return quoted + "'";
-}
+std::string shell(const std::string& text) { return shell_word(text); }
 
 std::string sibling(const std::filesystem::path& file, const std::string& suffix) {
     return (file.parent_path() / (file.stem().string() + suffix + ".tif")).string();

@@ -103,6 +103,21 @@ OGRSpatialReference coded_crs(const std::string& wkt) {
     return named;
 }
 
+OGRSpatialReference wgs84() {
+    OGRSpatialReference degrees;
+    degrees.SetWellKnownGeogCS("WGS84");
+    degrees.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    return degrees;
+}
+
+/// From a CRS that GeoJSON cannot name to longitude and latitude; null for one that it can, and where there is no way.
+gdal::Transformation to_degrees(const std::string& wkt) {
+    if (wkt.empty() || !coded_crs(wkt).IsEmpty()) return {};
+    const OGRSpatialReference map = gdal::crs_from_wkt(wkt), degrees = wgs84();
+    const gdal::Messages quiet;
+    return gdal::Transformation(OGRCreateCoordinateTransformation(&map, &degrees));
+}
+
 /// One polygon per 4-connected patch of pixels deeper than the threshold, in map coordinates, largest first.
 std::vector<std::unique_ptr<OGRPolygon>> patches(const Raster& depth, double threshold) {
     gdal::register_drivers();
@@ -116,10 +131,13 @@ std::vector<std::unique_ptr<OGRPolygon>> patches(const Raster& depth, double thr
 
 void write_features(GDALDataset& dataset, const std::vector<std::unique_ptr<OGRPolygon>>& outlines,
                     const std::string& name, const Raster& depth, const std::map<std::string, double>& attributes) {
-    OGRSpatialReference crs = coded_crs(depth.crs_wkt);
+    const gdal::Transformation transformation = to_degrees(depth.crs_wkt);
+    OGRSpatialReference crs = transformation ? wgs84() : coded_crs(depth.crs_wkt);
     const double pixel_area = depth.geometry.cell * depth.geometry.cell;
-    // 1e-9 m, of the order of a map coordinate's round-off: shared edges stay shared, numbers stay short.
-    const char* const options[] = {"RFC7946=NO", "COORDINATE_PRECISION=9", "SIGNIFICANT_FIGURES=15", nullptr};
+    // 1e-9 m, of the order of a map coordinate's round-off: shared edges stay shared, numbers stay short. 1e-12 degrees
+    // are 1e-7 m.
+    const char* const options[] = {"RFC7946=NO", transformation ? "COORDINATE_PRECISION=12" : "COORDINATE_PRECISION=9",
+                                   "SIGNIFICANT_FIGURES=15", nullptr};
     OGRLayer* layer =
         dataset.CreateLayer(name.c_str(), crs.IsEmpty() ? nullptr : &crs, wkbPolygon, const_cast<char**>(options));
     if (!layer) return;  // the caller sees GDAL's complaint
@@ -134,6 +152,7 @@ void write_features(GDALDataset& dataset, const std::vector<std::unique_ptr<OGRP
         // Whole pixels: free of the cancellation of large map coordinates.
         feature->SetField("area_m2", std::round(outline->get_Area() / pixel_area) * pixel_area);
         for (const auto& [key, value] : attributes) feature->SetField(key.c_str(), value);
+        if (transformation && outline->transform(transformation.get()) != OGRERR_NONE) return;
         feature->SetGeometry(outline.get());
         if (layer->CreateFeature(feature.get()) != OGRERR_NONE) return;
     }
@@ -212,7 +231,10 @@ void write_class_geotiff(const std::filesystem::path& target, const GridGeometry
     write_text(names, class_names_xml(classes));
 }
 
-bool footprint_names_crs(const std::string& crs_wkt) { return !coded_crs(crs_wkt).IsEmpty(); }
+FootprintPlace footprint_place(const std::string& crs_wkt) {
+    if (!coded_crs(crs_wkt).IsEmpty()) return FootprintPlace::named;
+    return to_degrees(crs_wkt) ? FootprintPlace::degrees : FootprintPlace::unnamed;
+}
 
 void write_footprint(const std::filesystem::path& target, const Raster& covered_depth, double threshold,
                      const std::map<std::string, double>& attributes) {

@@ -39,11 +39,14 @@ void write_class_geotiff(const std::filesystem::path& target, const GridGeometry
 /// GeoJSON with the outlines of the nodes' pixels deeper than `threshold` [m], with holes, largest first. Pixels that
 /// touch only at a corner belong to different outlines. Attributes: area_m2, threshold_m and the given ones. It has a
 /// `crs` member when the raster's CRS has an authority's code. RFC 7946 dropped that member, and every GIS still reads
-/// it. NaN counts as not covered. Throws as write_geotiff.
+/// it. Without a code the outlines are in longitude and latitude of WGS 84, as that standard asks for. NaN counts as not
+/// covered. Throws as write_geotiff.
 void write_footprint(const std::filesystem::path& target, const Raster& covered_depth, double threshold,
                      const std::map<std::string, double>& attributes = {});
 
-/// Whether that member can name the CRS. Without it a GIS takes the coordinates for degrees.
-bool footprint_names_crs(const std::string& crs_wkt);
+/// How such a file places its outlines: in a CRS that it names, in degrees, or (no CRS, or none that PROJ can bring to
+/// degrees) in coordinates of the map that a GIS takes for degrees.
+enum class FootprintPlace { named, degrees, unnamed };
+FootprintPlace footprint_place(const std::string& crs_wkt);
 
 }  // namespace frana

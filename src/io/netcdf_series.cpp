@@ -228,8 +228,10 @@ private:
         std::vector<float> bed(static_cast<std::size_t>(last.grid.size()), kNothing);
         for (std::size_t k = 0; k < bed.size(); ++k)
             if (!std::isnan(elevation->data[k])) bed[k] = as_float(elevation->data[k], "elevation", last.status.time);
-        const auto field =
-            make_field(root, dimensions, {"elevation", "elevation", 0, "m", "elevation of the bed"}, placed);
+        const auto field = make_field(
+            root, dimensions,
+            {"elevation", "elevation", 0, "m", "bed as the flow has it: the mean of the elevation model around a node"},
+            placed);
         return field && write_plane(*field, 0, last.grid, bed);
     }
 

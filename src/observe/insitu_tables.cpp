@@ -84,6 +84,9 @@ bool is_of_solids(const std::string& field) {
     return false;
 }
 
+/// Where the flow never came, -1 stands for its arrival.
+bool is_never(const Scalar& values, Index node) { return values.name == "arrival_time" && values[node] < 0.0; }
+
 class Reduction final : public InsituWork {
 public:
     Reduction(std::filesystem::path csv, std::vector<std::string> fields, double above)
@@ -104,7 +107,8 @@ public:
             ++nodes;
             depths += depth[k];
             for (std::size_t f = 0; f < values.size(); ++f)
-                if (!is_of_solids(values[f].name) || has_solids(k)) extents[f].add(k, values[f][k]);
+                if ((!is_of_solids(values[f].name) || has_solids(k)) && !is_never(values[f], k))
+                    extents[f].add(k, values[f][k]);
         }
         const double pixel = frame.grid.cell * frame.grid.cell;
         std::vector<double> row = {frame.status.time, pixel * static_cast<double>(nodes), pixel * depths};
@@ -146,7 +150,10 @@ double value_at(const Scalar& nodes, const GridGeometry& grid, const Vec2& point
     const std::vector<Corner> around = corners(grid, point);
     if (around.empty()) return TableWriter::empty;
     double value = 0.0;
-    for (const Corner& corner : around) value += corner.weight * nodes[corner.node];
+    for (const Corner& corner : around) {
+        if (is_never(nodes, corner.node)) return TableWriter::empty;
+        value += corner.weight * nodes[corner.node];
+    }
     return value;
 }
 

@@ -2,6 +2,7 @@
 import gc
 import os
 import pickle
+import types
 import unittest
 
 import numpy
@@ -123,6 +124,20 @@ class Arrays(InFolder):
         hole[0, 0] = numpy.inf
         with self.assertRaisesRegex(frana.DataError, "infinite"):
             frana.Raster(hole, where, crs=UTM).save(self.path("dem.tif"))
+
+    def test_what_a_masked_array_masks_is_no_data_and_a_crs_may_be_an_object(self):
+        where = (CELL, 0, WEST, 0, -CELL, NORTH)
+        numbers = numpy.full(slope().shape, 99, dtype="u1")
+        numbers[13:17, 8:12] = 2
+        crs = types.SimpleNamespace(to_wkt=lambda: UTM)
+        raster = frana.Raster(numpy.ma.masked_equal(numbers, 99), where, crs=crs)
+        self.assertEqual(raster.crs, UTM)
+        numpy.testing.assert_array_equal(numpy.isnan(raster.array), numbers == 99)
+        self.assertFalse(numpy.isnan(frana.Raster(numpy.ma.array(numbers), where).array).any())
+        self.assertEqual(frana.Raster(numbers, where, crs=None).crs, "")
+        case = frana.Case.from_rasters(dem=frana.Raster(slope(), where, crs=UTM), release=raster, density=1800, end=1.0,
+                                       law="coulomb", friction_angle_deg=15.0)
+        self.assertAlmostEqual(case.check().volume, 16 * CELL * CELL * 2.0, places=6)
 
     def test_a_case_from_rasters(self):
         depth = numpy.zeros(slope().shape)

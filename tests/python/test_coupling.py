@@ -7,7 +7,7 @@ import unittest
 import numpy
 
 import frana
-from common import CELL, COLUMNS, NORTH, ROWS, WEST, InFolder
+from common import CELL, COLUMNS, NORTH, ROWS, WEST, InFolder, slope
 
 X, Y = WEST + 150.0, NORTH - 75.0
 
@@ -94,7 +94,13 @@ class Bed(InFolder):
                 start.array[0, 0] = 1.0
             frame = next(run)
             numpy.testing.assert_array_equal(run.bed.array, frame.grid["elevation"][::-1])
+            read = run.ground
+            numpy.testing.assert_array_equal(read.array, slope().astype(numpy.float32))
+            with self.assertRaises(ValueError):
+                read.array[0, 0] = 1.0
             frame = run.advance(until=0.6)
+            numpy.testing.assert_array_equal(run.ground.array, read.array + frame.grid["bed_change"][::-1])
+            self.assertLess(frame.grid["bed_change"].min(), 0.0)
             now = run.bed.array
             numpy.testing.assert_array_equal(now, frame.grid["elevation"][::-1])
             lost = (start.array - now).sum() * CELL * CELL * 1800.0

@@ -1,6 +1,10 @@
 """Folders of runs read back."""
 import os
+import shutil
+import sys
+import types
 import unittest
+from unittest import mock
 
 import numpy
 
@@ -30,6 +34,26 @@ class Folders(InFolder):
         self.assertEqual(self.old.frames[-1].number, 4)
         with self.assertRaises(IndexError):
             self.old.frames[5]
+
+    def test_frames_have_places_and_a_system_as_those_of_a_run(self):
+        with self.case.run() as run:
+            live = next(run)
+            stored = self.old.frames[0]
+            for name in ("x", "y"):
+                numpy.testing.assert_array_equal(getattr(stored.grid, name), getattr(live.grid, name))
+            self.assertEqual((stored.grid.cell, stored.grid.crs), (live.grid.cell, live.grid.crs))
+            self.assertEqual(stored.particles.crs, run.crs)
+        shutil.rmtree(self.path("out", "rasters"))  # as while the run goes on
+        self.assertEqual(self.old.frames[0].grid.crs, stored.grid.crs)
+        with mock.patch.dict(sys.modules, {"xarray": types.SimpleNamespace(Dataset=lambda columns, coords, attrs: (
+                columns, coords, attrs))}):  # a stand-in where the package is not installed
+            columns, coords, attributes = stored.grid.to_xarray()
+        numpy.testing.assert_array_equal(coords["x"][1], stored.grid.x)
+        self.assertEqual(attributes["crs_wkt"], stored.grid.crs)
+        arrival = columns["arrival_time"][1]
+        never = stored.grid["arrival_time"] == -1.0
+        self.assertTrue(never.any() and not never.all())
+        numpy.testing.assert_array_equal(numpy.isnan(arrival), never)
 
     def test_history_is_a_structured_array(self):
         history = self.old.history

@@ -18,6 +18,8 @@ def grid_to_xarray(fields, x, y, crs):
     columns = {}
     for name in fields:
         array = fields[name].copy()
+        if name == "arrival_time":
+            array[array < 0.0] = float("nan")  # frames have -1 where the flow never came
         dims = ("y", "x") if array.ndim == 2 else ("y", "x", f"component_of_{array.shape[2]}")
         columns[name] = (dims, array, {"units": fields.unit(name)})
     return xarray.Dataset(columns, coords={"y": ("y", y, {"units": "m"}), "x": ("x", x, {"units": "m"})},

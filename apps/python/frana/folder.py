@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from . import _frana, raster
 from .errors import DataError
+from .nodes import Nodes, Points
 
 
 class Columns(Mapping):
@@ -27,6 +28,25 @@ class Columns(Mapping):
         return self._columns[name][1]
 
 
+class StoredGrid(Nodes, Columns):
+    """Fields of nodes, of the shape (ny, nx) or (ny, nx, components); row 0 is the southernmost."""
+
+    def __init__(self, columns, geometry, crs):
+        super().__init__(columns)
+        self._of_nodes, self._crs = geometry, crs
+
+    def _geometry(self):
+        return self._of_nodes
+
+
+class StoredParticles(Points, Columns):
+    """Fields of particles, of the shape (n,) or (n, components)."""
+
+    def __init__(self, columns, crs):
+        super().__init__(columns)
+        self._crs = crs
+
+
 class StoredFrame:
     """A frame of a run's VTK files: float32 precision, read when asked for.
 
@@ -35,9 +55,9 @@ class StoredFrame:
     number : int
     time : float
         [s]
-    grid : Columns
-        Fields of nodes, (ny, nx) or (ny, nx, components), south row first.
-    particles : Columns
+    grid : StoredGrid
+        Fields of nodes, (ny, nx) or (ny, nx, components), south row first, with what `Grid` has of a run.
+    particles : StoredParticles
         Fields of particles, (n,) or (n, components).
     """
 
@@ -48,13 +68,15 @@ class StoredFrame:
     @property
     def grid(self):
         if self._grid is None:
-            self._grid = Columns(_frana.grid_frame(self._folder, self.number)[2])
+            _, geometry, columns = _frana.grid_frame(self._folder, self.number)
+            self._grid = StoredGrid(columns, geometry, _frana.crs_in(self._folder))
         return self._grid
 
     @property
     def particles(self):
         if self._particles is None:
-            self._particles = Columns(_frana.particle_frame(self._folder, self.number)[1])
+            columns = _frana.particle_frame(self._folder, self.number)[1]
+            self._particles = StoredParticles(columns, _frana.crs_in(self._folder))
         return self._particles
 
     def __repr__(self):

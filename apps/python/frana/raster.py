@@ -34,11 +34,11 @@ class Raster:
     Parameters
     ----------
     array : array_like, shape (rows, columns)
-        North row first; NaN: no data. Numbers of any type, copied to float64.
+        North row first; NaN, and what a numpy.ma array masks: no data. Numbers of any type, copied to float64.
     transform : six numbers
         As `Affine`: square pixels, north up.
-    crs : str
-        WKT; empty: unknown.
+    crs : str or CRS
+        WKT, or what has to_wkt(), as CRS of rasterio and pyproj; empty or None: unknown.
     unit, name, description : str
         "m", "peak_depth", "largest depth ever".
     """
@@ -46,6 +46,7 @@ class Raster:
     def __init__(self, array, transform, crs="", unit="", name="", description=""):
         import numpy
 
+        mask = numpy.ma.getmaskarray(array) if numpy.ma.isMaskedArray(array) else None
         numbers = numpy.asarray(array)
         if numbers.dtype.kind not in "biuf":
             raise DataError([f"array: found numbers of type {numbers.dtype}; expected real ones; give array.astype(float)"])
@@ -56,8 +57,11 @@ class Raster:
             raise DataError([f"transform: found {tuple(transform)[:6]}; expected (cell, 0, west, 0, -cell, north); "
                              "gdalwarp makes a raster north up with square pixels"])
         self.array = numpy.array(numbers, dtype=float, order="C")
+        if mask is not None:
+            self.array[mask] = numpy.nan
         self.transform = _affine(a, b, c, d, e, f)
-        self.crs, self.unit, self.name, self.description = str(crs), unit, name, description
+        self.crs = str(crs.to_wkt() if hasattr(crs, "to_wkt") else crs or "")
+        self.unit, self.name, self.description = unit, name, description
 
     @classmethod
     def _of(cls, name, unit, description, north_up):

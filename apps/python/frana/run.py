@@ -2,7 +2,8 @@
 import json
 from collections.abc import Mapping
 
-from . import _frana, convert, raster
+from . import raster
+from .nodes import Nodes, Points
 
 
 class Fields(Mapping):
@@ -28,49 +29,15 @@ class Fields(Mapping):
         return self._frame.unit(self._of_grid, name)
 
 
-class Grid(Fields):
+class Grid(Nodes, Fields):
     """Fields of nodes, of the shape (ny, nx) or (ny, nx, components); row 0 is the southernmost."""
 
-    @property
-    def x(self):
-        """Map x of the nodes, shape (nx,) [m]."""
-        import numpy
-
-        nx, _, x0, _, cell = self._frame.grid_geometry
-        return x0 + cell * numpy.arange(nx)
-
-    @property
-    def y(self):
-        """Map y of the nodes, shape (ny,), growing to the north [m]."""
-        import numpy
-
-        _, ny, _, y0, cell = self._frame.grid_geometry
-        return y0 + cell * numpy.arange(ny)
-
-    @property
-    def cell(self):
-        """Distance of the nodes [m]."""
-        return self._frame.grid_geometry[4]
-
-    def to_xarray(self):
-        """An xarray.Dataset of copies, with x and y of the nodes and units; y grows. ImportError without xarray."""
-        return convert.grid_to_xarray(self, self.x, self.y, self._crs)
-
-    def to_pyvista(self):
-        """A pyvista.StructuredGrid on the ground, fields at its points. ImportError without pyvista."""
-        return convert.grid_to_pyvista(self, self.x, self.y)
+    def _geometry(self):
+        return self._frame.grid_geometry
 
 
-class Particles(Fields):
+class Particles(Points, Fields):
     """Fields of particles, of the shape (n,) or (n, components)."""
-
-    def to_pyvista(self):
-        """A pyvista.PolyData of points with their fields. ImportError without pyvista."""
-        return convert.particles_to_pyvista(self)
-
-    def to_geodataframe(self):
-        """A geopandas.GeoDataFrame of points on the map, a column for each number. ImportError without geopandas."""
-        return convert.particles_to_geodataframe(self, self._crs)
 
 
 class Frame:
@@ -79,13 +46,14 @@ class Frame:
     Attributes
     ----------
     number : int
-        0, 1, 2, ... of the outputs.
+        0, 1, 2, ... of the outputs. Between two of them, from `Run.advance`, that of the next.
     time : float
         [s]
     status : Status
         Sums and extremes.
     grid : Grid
-        Fields of nodes: "elevation", "depth", "surface", "velocity" (ny, nx, 3), "peak_depth", ...
+        Fields of nodes: "elevation" (of the bed as the flow has it, see `Run.bed`), "depth", "surface",
+        "velocity" (ny, nx, 3), "peak_depth", "bed_change", ...
     particles : Particles
         Fields of particles: "position" (n, 3), "depth" (n,), "velocity" (n, 3), ...
     """
@@ -191,7 +159,8 @@ class Run:
     def advance(self, *, until):
         """Goes on to the first moment at or after ``until`` [s], and returns its frame; None: the run is over.
 
-        Between outputs a frame is that of the step which reaches the time: looking changes no step.
+        Between outputs a frame is that of the step which reaches the time: looking changes no step. It has the number
+        of the output to come, so that two frames may have one number; their times differ.
         """
         until = float(until)
         if not self.over and not until > self.time:
@@ -246,13 +215,28 @@ class Run:
 
     @property
     def bed(self):
-        """Elevation of the ground as it is now, with what was eroded and deposited: a `Raster` [m], read-only.
+        """The bed as the flow has it now, with what was eroded and deposited: a `Raster` [m], read-only.
 
+        A node has the mean of the elevation model around it (THEORY (5)), as "elevation" of frames: it differs from
+        the model on rough ground, without any erosion. `ground` has the model's own heights.
         On the nodes of the grid, north row first. Between outputs it is that of the last step that was looked at.
         """
-        bed = raster.Raster._of("elevation", "m", "bed elevation", self._run.bed())
-        bed.array.flags.writeable = False
-        return bed
+        return self._heights("elevation", "bed as the flow has it", self._run.bed())
+
+    @property
+    def ground(self):
+        """The elevation model's heights as they are now, with what was eroded and deposited: a `Raster` [m], read-only.
+
+        Its difference from the start is "bed_change" of frames; at the end it is "final_elevation" of an erodible bed.
+        On the nodes of the grid as `bed`.
+        """
+        return self._heights("ground", "elevation model, with the bed's change", self._run.ground())
+
+    @staticmethod
+    def _heights(name, description, north_up):
+        heights = raster.Raster._of(name, "m", description, north_up)
+        heights.array.flags.writeable = False
+        return heights
 
     @property
     def crs(self):

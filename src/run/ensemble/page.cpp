@@ -53,7 +53,7 @@ std::string sensitivity_section(const EnsemblePlan& plan, const EnsembleBase& ba
     std::string page = fmt::format("\n\n## What the outcomes hang on\n\n| | key | {} | {} |\n|---|---|---:|---:|\n",
                                    shares ? "first order" : "mean effect", shares ? "total" : "its spread");
     constexpr double shown = 0.005;  // a share nearer to 0 or 1 is as good as that
-    bool outside = false;
+    bool outside = false, crossed = false;
     for (const Outcome& outcome : outcomes_of(base)) {
         const auto found = sensitivity_of(outcome, plan, results);
         for (std::size_t k = 0; k < found.size(); ++k) {
@@ -61,9 +61,12 @@ std::string sensitivity_section(const EnsemblePlan& plan, const EnsembleBase& ba
                                 found[k].total);
             for (const double share : {found[k].first, found[k].total})
                 outside = outside || share < -shown || share > 1.0 + shown;
+            crossed = crossed || found[k].first > found[k].total + shown;
         }
     }
     if (shares && outside) page += "\nShares below 0 or above 1: too few samples.";
+    if (shares && crossed)
+        page += fmt::format("{}\nA first order above its total: too few samples.", outside ? "\n" : "");
     return page;
 }
 

@@ -38,6 +38,9 @@ public:
     using Tell = std::function<void(std::size_t done, std::size_t all)>;
     std::vector<DrawnFigure> draw(int threads, std::vector<std::string>& warnings, const Tell& tell = {});
 
+    /// How many are still to be drawn.
+    std::size_t pictures() const;
+
 private:
     struct Wanted {
         DrawnFigure figure;
@@ -48,7 +51,6 @@ private:
     class Queue;
     void make(Wanted& wanted) const;
     bool stop() const;
-    std::size_t pictures() const;
 
     std::filesystem::path run_dir_;
     std::function<bool()> stop_;

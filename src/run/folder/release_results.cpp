@@ -129,12 +129,16 @@ ShapeLayer release_layer(const std::vector<ReleaseSource>& sources, const std::v
             volume = entry ? entry->volume : kUnknown;
         }
         std::vector<std::string> said_by_the_scene;
-        for (const Polygon& part : GdalReader().read_polygons(source.outline, crs_wkt, said_by_the_scene).parts)
-            layer.shapes.push_back({part,
-                                    {{"release", static_cast<long long>(source.table)},
-                                     {"area_m2", area_of_part(part)},
-                                     {"entered_s", entered},
-                                     {"volume_m3", volume}}});
+        Polygons outline = GdalReader().read_polygons(source.outline, crs_wkt, said_by_the_scene);
+        double area = 0.0;
+        for (const Polygon& part : outline.parts) area += area_of_part(part);
+        AttributedShape shape{outline.parts.front(),
+                              {{"release", static_cast<long long>(source.table)},
+                               {"area_m2", area},
+                               {"entered_s", entered},
+                               {"volume_m3", volume}}};
+        if (outline.parts.size() > 1) shape.shape = std::move(outline);  // one row: the volume is that of all
+        layer.shapes.push_back(std::move(shape));
     }
     return layer;
 }

@@ -49,9 +49,11 @@ std::string heading(const RunRecord& r) {
 
 /// Of two phases each has its own volume: that of the grains is without pores.
 std::string left_text(const RunRecord& r) {
-    if (r.of_water_alone()) return fmt::format("{:.6g} m3 of water", r.extras.water->left);
-    if (!r.extras.water) return fmt::format("{:.6g} m3", r.summary.last.mass_left / r.density);
-    return fmt::format("{:.6g} m3 of grains and {:.6g} m3 of water", r.extras.water->solids_left, r.extras.water->left);
+    // A sum of gains and losses; below zero it is round-off.
+    const auto volume = [](double left) { return fmt::format("{:.6g} m3", std::max(0.0, left)); };
+    if (r.of_water_alone()) return volume(r.extras.water->left) + " of water";
+    if (!r.extras.water) return volume(r.summary.last.mass_left / r.density);
+    return volume(r.extras.water->solids_left) + " of grains and " + volume(r.extras.water->left) + " of water";
 }
 
 /// "took 12 300 m3 (growth 1.8), 0.7 m deep at most, budget 3e-16": volumes as they are in the flow. What it grew from is

@@ -8,7 +8,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "io/gdal_reader.h"
-#include "run/folder/run_folder.h"
 #include "run/folder/run_insitu.h"
 #include "run/folder/run_job.h"
 #include "run/folder/run_page.h"
@@ -88,6 +87,7 @@ CaseRun::CaseRun(const CaseFile& file, const RunWishes& wishes)
     simulation_ = make_simulation(scene_, wishes.resume ? Start::resumed : Start::placed);
 
     // Only now is the folder changed: what lies there survives a case that cannot run.
+    open_.emplace(run_dir_);
     if (!wishes.resume) {
         if (!lock_) lock_.emplace(run_dir_);
         prepare_run_folder(run_dir_, inputs, overwrite);

@@ -9,6 +9,7 @@
 
 #include "run/folder/checkpoint.h"
 #include "run/folder/products.h"
+#include "run/folder/run_folder.h"
 #include "run/folder/run_lock.h"
 #include "run/folder/run_record.h"
 #include "run/run_loop.h"
@@ -47,6 +48,7 @@ public:
 private:
     std::filesystem::path run_dir_;
     std::optional<RunLock> lock_;
+    std::optional<OpenRecord> open_;  ///< closed before the lock is let go of
     Scene scene_;
     std::unique_ptr<Simulation> simulation_;
     std::optional<CheckpointKeeper> keeper_;

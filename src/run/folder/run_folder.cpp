@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -194,7 +195,7 @@ bool is_others(const OtherFiles& others, const fs::path& run_dir, const fs::path
 /// Marks the folder as that of a running case and removes its products but those of the kinds that stay.
 void clear(const fs::path& run_dir, const OtherFiles& others, const std::function<bool(const ProductKind&)>& stays) {
     // Written first: it also shows that the folder is writable.
-    write_text(run_dir / "run.json", Json{{"exit_reason", "running"}, {"others", others}}.dump(2) + "\n");
+    write_text(run_dir / "run.json", Json{{"exit_reason", kRunning}, {"others", others}}.dump(2) + "\n");
     remove_half_written(run_dir);
     std::error_code failure;
     for (const ProductKind& kind : product_kinds())
@@ -381,6 +382,18 @@ void add_to_files(const fs::path& run_dir, const std::function<void()>& work) {
     const std::function<void()> add = adding_to_files(run_dir);
     work();
     add();
+}
+
+OpenRecord::~OpenRecord() {
+    static_assert(sizeof kRunning == sizeof kStopped, "the one takes the place of the other");
+    std::fstream file(run_dir_ / "run.json", std::ios::in | std::ios::out | std::ios::binary);
+    std::string begins(64, '\0');  // longer than the first line
+    file.read(begins.data(), static_cast<std::streamsize>(begins.size()));
+    const std::size_t at = begins.find(std::string("\"exit_reason\": \"") + kRunning);
+    if (at == std::string::npos) return;
+    file.clear();  // a short file ends before
+    file.seekp(static_cast<std::streamoff>(begins.find(kRunning, at)));
+    file << kStopped;
 }
 
 }  // namespace frana

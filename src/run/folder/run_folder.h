@@ -57,6 +57,22 @@ void require_no_input(const std::string& option, const std::filesystem::path& ou
 void prepare_run_folder(const std::filesystem::path& run_dir, const std::vector<std::filesystem::path>& inputs = {},
                         Overwrite overwrite = Overwrite::no);
 
+/// What run.json says of a run that goes on, and of one that broke off before it could write its end.
+inline constexpr char kRunning[] = "running", kStopped[] = "stopped";
+
+/// While it lives, run.json may say that the run goes on. Afterwards it does not. The word is replaced in place, since a
+/// full disk takes no new file.
+class OpenRecord {
+public:
+    explicit OpenRecord(std::filesystem::path run_dir) : run_dir_(std::move(run_dir)) {}
+    ~OpenRecord();
+    OpenRecord(const OpenRecord&) = delete;
+    OpenRecord& operator=(const OpenRecord&) = delete;
+
+private:
+    std::filesystem::path run_dir_;
+};
+
 /// Removes what a run leaves at its end (report, rasters, figures, ...) and half-written files of a run that was
 /// killed. Series and tables stay, for the run to go on with. Throws UserError as above.
 void clear_for_resume(const std::filesystem::path& run_dir);

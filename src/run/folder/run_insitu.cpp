@@ -41,15 +41,17 @@ private:
     std::unique_ptr<InsituWork> one_, other_;
 };
 
-/// A work in a few words.
-template <class Sample>
+/// Shapes for a GIS; `add` puts those of a frame into the series.
+template <class Add>
 class Shapes final : public InsituWork {
 public:
-    explicit Shapes(Sample look) : sample_(std::move(look)) {}
-    void sample(const Frame& frame, Index) override { sample_(frame); }
+    Shapes(ShapeSeries series, Add add) : series_(std::move(series)), add_(std::move(add)) {}
+    void sample(const Frame& frame, Index) override { add_(series_, frame); }
+    void serialize(Archive& archive) override { series_.serialize(archive); }
 
 private:
-    Sample sample_;
+    ShapeSeries series_;
+    Add add_;
 };
 
 std::unique_ptr<InsituWork> cut(const Scene& scene, const Insitu& entry, const fs::path& folder) {
@@ -59,32 +61,33 @@ std::unique_ptr<InsituWork> cut(const Scene& scene, const Insitu& entry, const f
 }
 
 /// `work`, and with gis = true the shapes for a GIS besides.
-template <class AddShapes>
-std::unique_ptr<InsituWork> with_shapes(std::unique_ptr<InsituWork> work, const Insitu& entry, AddShapes add) {
+template <class Add>
+std::unique_ptr<InsituWork> with_shapes(std::unique_ptr<InsituWork> work, const Scene& scene, const Insitu& entry,
+                                        const fs::path& folder, Add add) {
     if (!entry.gis) return work;
-    return std::make_unique<Both>(std::move(work), std::make_unique<Shapes<AddShapes>>(std::move(add)));
+    ShapeSeries series(folder / (entry.name + ".gpkg"), scene.bed.crs_wkt);
+    return std::make_unique<Both>(std::move(work), std::make_unique<Shapes<Add>>(std::move(series), std::move(add)));
 }
 
 std::unique_ptr<InsituWork> contour(const Scene& scene, const Insitu& entry, const fs::path& folder) {
-    ShapeSeries series(folder / (entry.name + ".gpkg"), scene.bed.crs_wkt);
-    auto add = [&entry, shapes = std::move(series)](const Frame& frame) mutable {
+    auto add = [&entry](ShapeSeries& shapes, const Frame& frame) {
         shapes.add_lines(frame.status.time, level_lines_of(frame, entry.fields.front(), entry.levels),
                          scalar(frame.nodes, entry.fields.front(), "the grid").unit);
     };
-    return with_shapes(make_contours(folder, entry.name, entry.fields.front(), entry.levels), entry, std::move(add));
+    return with_shapes(make_contours(folder, entry.name, entry.fields.front(), entry.levels), scene, entry, folder,
+                       add);
 }
 
 std::unique_ptr<InsituWork> threshold(const Scene& scene, const Insitu& entry, const fs::path& folder) {
     Interval kept;
     kept.low = entry.from.value_or(kept.low);
     kept.high = entry.to.value_or(kept.high);
-    ShapeSeries series(folder / (entry.name + ".gpkg"), scene.bed.crs_wkt);
-    auto add = [&entry, kept, shapes = std::move(series)](const Frame& frame) mutable {
+    auto add = [&entry, kept](ShapeSeries& shapes, const Frame& frame) {
         std::vector<std::uint8_t> cells = cells_within(frame, entry.fields.front(), kept);
         shapes.add_cells(frame.status.time, frame.grid, cells);
     };
     const auto make = entry.of_particles ? make_particle_threshold : make_cell_threshold;
-    return with_shapes(make(folder, entry.name, entry.fields.front(), kept), entry, std::move(add));
+    return with_shapes(make(folder, entry.name, entry.fields.front(), kept), scene, entry, folder, add);
 }
 
 std::unique_ptr<InsituWork> make_work(const Scene& scene, const Insitu& entry, const fs::path& folder) {

@@ -134,9 +134,15 @@ void note_taken(RunRecord& record, const Scene& scene, const std::vector<Product
         record.taken_of_bed = taken_of_bed(scene, eroded->raster.geometry, eroded->raster.values);
 }
 
-/// footprint.geojson of a CRS without a code looks like degrees.
+/// footprint.geojson of a CRS without a code is in degrees or, where there is no way to them, looks so.
 void remark_on_unnamed_crs(const Raster& covered, bool has_layers, RunRecord& record) {
-    if (covered.crs_wkt.empty() || footprint_names_crs(covered.crs_wkt)) return;
+    if (covered.crs_wkt.empty()) return;
+    const FootprintPlace place = footprint_place(covered.crs_wkt);
+    if (place == FootprintPlace::degrees)
+        record.warnings.push_back(
+            "footprint.geojson: found a CRS without an EPSG code, which GeoJSON cannot name; it is in longitude and "
+            "latitude (WGS 84)");
+    if (place != FootprintPlace::unnamed) return;
     record.warnings.push_back(fmt::format(
         "footprint.geojson: found a CRS without an EPSG code, which GeoJSON cannot name, so that a GIS takes "
         "its coordinates for degrees; expected those of the elevation model's CRS; {}give the layer that CRS "

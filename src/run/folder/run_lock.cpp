@@ -65,4 +65,12 @@ RunLock::~RunLock() {
     ::close(opened_);
 }
 
+bool is_run_going_on(const fs::path& run_dir) {
+    const int opened = ::open((run_dir / ".frana.lock").c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+    if (opened < 0) return false;
+    const bool held = ::flock(opened, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    ::close(opened);
+    return held;
+}
+
 }  // namespace frana

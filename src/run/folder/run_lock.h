@@ -18,4 +18,7 @@ private:
     int opened_ = -1;
 };
 
+/// Whether a process has a run going on in the folder now. False also where the file system has no locks.
+bool is_run_going_on(const std::filesystem::path& run_dir);
+
 }  // namespace frana
