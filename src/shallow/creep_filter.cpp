@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "base/simd.h"
+#include "shallow/shock.h"
 #include "shallow/surface.h"
 #include "shallow/tiles_around.h"
 #include "shallow/two_cell_wave.h"
@@ -29,6 +31,7 @@ bool far_inside(const Nodes& nodes, Index k, Index up) {
 Double4 shares_of(const Flow& flow, Index k, int pass) {
     const Nodes& nodes = flow.nodes;
     const Double4 none = {}, one = all(1.0), depth = load(&nodes.depth[k]);
+    const bool bores = senses_bores(flow.scheme);
     Double4 share = min(max(depth * (1.0 / (kCellsAPass * flow.cell)) - double(pass), none), one);
     if (!any(share > none)) return none;
     for (int lane = 0; lane < 4; ++lane) {
@@ -36,7 +39,8 @@ Double4 shares_of(const Flow& flow, Index k, int pass) {
         const Pair& v = nodes.before[k + lane];
         const double froude = std::sqrt((v.x * v.x + v.y * v.y) / (flow.gravity * depth[lane]));
         const double creeps = std::clamp(2.0 - froude / kCreeps, 0.0, 1.0);
-        share[lane] *= creeps > 0.0 && far_inside(nodes, k + lane, flow.grid.stride()) ? creeps : 0.0;
+        const bool gets = creeps > 0.0 && far_inside(nodes, k + lane, flow.grid.stride());
+        share[lane] *= gets ? creeps * (bores ? away_from_bores(nodes, k + lane, flow.grid.stride()) : 1.0) : 0.0;
     }
     return share;
 }
@@ -48,6 +52,10 @@ Double4 wave_of_four(const double* e, Index up) {
 }
 
 }  // namespace
+
+CreepFilter::CreepFilter(const Scene& scene)
+    : resisted_(!std::holds_alternative<bed::None>(scene.bed_law) ||
+                !std::holds_alternative<rheology::None>(scene.rheology)) {}
 
 void CreepFilter::find_tiles(const Flow& flow) {
     creeps_.assign(flow.active.work.size(), 0), tiles_.clear();
@@ -63,7 +71,7 @@ void CreepFilter::find_tiles(const Flow& flow) {
 
 void CreepFilter::pass(Flow& flow, double max_depth) {
     const int passes = std::min(kMostPasses, static_cast<int>(max_depth / (kCellsAPass * flow.cell)));
-    if (passes < 1 || !(flow.scheme.filter > 0.0)) return;
+    if (passes < 1 || !resisted_ || !(flow.scheme.filter > 0.0)) return;
     find_tiles(flow);
     if (tiles_.empty()) return;
     Nodes& nodes = flow.nodes;

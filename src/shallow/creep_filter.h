@@ -11,12 +11,16 @@ namespace frana {
 /// than two cells would grow there.
 class CreepFilter {
 public:
+    /// Without friction and stress nothing creeps for long: then it does nothing.
+    explicit CreepFilter(const Scene& scene);
+
     /// After filter(), before shoreline(). `max_depth`: of the flow [m]; below 1.5 cells nothing is done.
     void pass(Flow& flow, double max_depth);
 
 private:
     void find_tiles(const Flow& flow);
 
+    bool resisted_;                     ///< the flow has friction or stress
     std::vector<std::uint8_t> creeps_;  ///< by position in the work list: has nodes that are filtered again
     std::vector<Index> tiles_;          ///< those that have
 };

@@ -19,6 +19,9 @@ inline bool has_viscosity(const Scheme& scheme) {
     return scheme.viscosity_linear > 0.0 || scheme.viscosity_quadratic > 0.0;
 }
 
+/// Whether the filter is held back at bores.
+inline bool senses_bores(const Scheme& scheme) { return has_viscosity(scheme) && scheme.shock_sensor > 0.0; }
+
 /// Sensor at a node: the largest of its own four faces and of those of its four neighbours.
 inline double shock_near(const Nodes& nodes, Index k, Index up) {
     const Pair* s = nodes.shock.data() + k;
@@ -27,6 +30,11 @@ inline double shock_near(const Nodes& nodes, Index k, Index up) {
     const double adjacent_x = std::max({s[up].x, s[up - 1].x, s[-up].x, s[-up - 1].x});
     const double adjacent_y = std::max({s[1].y, s[1 - up].y, s[-1].y, s[-1 - up].y});
     return std::max({along_x, along_y, adjacent_x, adjacent_y});
+}
+
+/// The share of the filter's strength that the sensor leaves. THEORY (18).
+inline double away_from_bores(const Nodes& nodes, Index k, Index up) {
+    return std::max(0.0, 1.0 - 2.0 * shock_near(nodes, k, up));
 }
 
 }  // namespace frana

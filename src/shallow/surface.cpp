@@ -299,7 +299,7 @@ Real without_wave(Real h, Real wave) {
 /// (1 - s X)(1 - s Y) multiplied out, so that x and y may change places. Where the product is not known, two thirds of
 /// each. A third of the waves along one axis and of the chequerboard is then left.
 void filter_node(const Flow& flow, Nodes& nodes, Index k, Index up, bool x, bool y, bool sensed) {
-    const double held = sensed ? std::max(0.0, 1.0 - 2.0 * shock_near(nodes, k, up)) : 1.0;
+    const double held = sensed ? away_from_bores(nodes, k, up) : 1.0;
     const double strength = flow.scheme.filter * held;
     const double wave_y = y ? wave_along<double>(nodes.level.data() + k, up) : 0.0;
     const std::uint8_t* row = nodes.row_known.data() + k;
@@ -486,7 +486,7 @@ void filter(Flow& flow) {
     if (flow.scheme.filter <= 0.0) return;
     Nodes& nodes = flow.nodes;
     const Index up = flow.grid.stride();
-    const bool sensed = has_viscosity(flow.scheme) && flow.scheme.shock_sensor > 0.0;
+    const bool sensed = senses_bores(flow.scheme);
     for_each_work_tile(flow.active, [&](Index, Index tile) {
         for_each_inner_four(flow, tile, [&](Index k, std::uint32_t x, std::uint32_t) { wave_along_x(nodes, k, x); });
     });

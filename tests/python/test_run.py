@@ -226,9 +226,13 @@ class Together(InFolder):
             numpy.testing.assert_array_equal(result.peak_depth.array, alone.peak_depth.array)
 
     def test_the_interpreter_is_free_while_the_run_steps(self):
-        """Whoever waits for a thread's turn with the lock taken would count nothing before the run ends."""
+        """Whoever waits for a thread's turn with the lock taken would count nothing before the run ends.
+
+        On a busy machine the other thread may get no turn in a short step, so one of many outputs is enough.
+        """
         self.case["time.end"] = 20.0
-        self.case["output.every"] = 20.0
+        self.case["output.every"] = 0.5
+        self.case["time.stop_at_rest"] = False
         counted, over = [0], threading.Event()
 
         def count():
@@ -240,9 +244,12 @@ class Together(InFolder):
         next(run)
         counter = threading.Thread(target=count)
         counter.start()
-        before = counted[0]
-        next(run)
-        self.assertGreater(counted[0], before + 10)
+        most = 0
+        for _ in range(39):
+            before = counted[0]
+            next(run)
+            most = max(most, counted[0] - before)
+        self.assertGreater(most, 10)
         over.set()
         counter.join()
 
