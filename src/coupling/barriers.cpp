@@ -75,8 +75,8 @@ bool at_crest(const Surface& barrier, const Vec2& place, double cell) {
     };
     const Vec2 x(0.25 * cell, 0.0), y(0.0, 0.25 * cell),
         rise(top(place + x) - top(place - x), top(place + y) - top(place - y));
-    // Of a cell, over half of one: what sampling makes of a level crest. Along an axis a crest may rise by 1 in 5 itself,
-    // and at a mesh's ends the steepest way is that of its edge.
+    // Of a cell, over half of one: what sampling makes of a level crest. Along an axis a crest may rise by 1 in 5
+    // itself, and at a mesh's ends the steepest way is that of its edge.
     constexpr double kLevel = 0.02, kCrest = 0.1;
     const auto rises = [&](const Vec2& way, double by) {
         if (way.norm() <= kLevel * cell) return false;

@@ -8,8 +8,9 @@
 
 namespace frana {
 
-/// What a run turned over since its first status, or could have [J]. Friction took a part, and a part moves. What left is
-/// taken to have moved as what is there. Of a lake a hundredth of m g h counts: errors of its surface are a share of that.
+/// What a run turned over since its first status, or could have [J]. Friction took a part, and a part moves. What left
+/// is taken to have moved as what is there. Of a lake a hundredth of m g h counts: errors of its surface are a share of
+/// that.
 inline double energy_at_stake(const Status& first, const Status& now) {
     constexpr double kOfLake = 0.01;
     const double depth = std::max(first.max_depth, now.max_depth),

@@ -127,8 +127,9 @@ const Obstacle& obstacle_at(const StructuredBody& body, const Vec2& node) {
 /// Whether node k is behind a face, with next to nothing open: its surface is that of the grains before the face.
 bool is_blocked(const StructuredBody& body, Index k) { return body.ground[k].open <= kLeastOpen; }
 
-/// The surface goes on level behind faces (grain_surface.cpp), so that their reaction to earth pressure is a part of the
-/// thrust. It is rho g_z K h^2 / 2 for each metre of them. Between two nodes there is as much of a face as less is open.
+/// The surface goes on level behind faces (grain_surface.cpp), so that their reaction to earth pressure is a part of
+/// the thrust. It is rho g_z K h^2 / 2 for each metre of them. Between two nodes there is as much of a face as less is
+/// open.
 FacesPressed press_on_faces(const StructuredBody& body, Index k, int lane, const GrainsPressing& grains) {
     FacesPressed faces;
     const Index node = k + lane, up = body.grid.stride();
