@@ -360,6 +360,54 @@ TEST_CASE("A barrier of any shape is ground to columns and a wall to points", "[
     CHECK(load.run_up > 2.5);
 }
 
+namespace {
+
+/// A dam across the channel, 3 m high, its faces 1 in 1 from x = 9 m and to 15 m.
+std::shared_ptr<const DistanceField> dam_shape() {
+    auto field = std::make_shared<DistanceField>();
+    field->origin = {8.0, -1.5, 1.0}, field->spacing = 0.0625, field->nodes = {129, 113, 81};
+    field->distance.resize(static_cast<std::size_t>(129 * 113 * 81));
+    const double steep = std::sqrt(2.0);
+    for (Index k = 0; k < field->nodes[2]; ++k)
+        for (Index j = 0; j < field->nodes[1]; ++j)
+            for (Index i = 0; i < field->nodes[0]; ++i) {
+                const Vec3 x = field->place(i, j, k);
+                const double before = (x.z() - 2.0 - (x.x() - 9.0)) / steep,
+                             behind = (x.z() - 2.0 - (15.0 - x.x())) / steep;
+                field->at(i, j, k) =
+                    std::max({before, behind, x.z() - 4.75, 1.5 - x.z(), std::abs(x.y() - 2.0) - 3.25});
+            }
+    return field;
+}
+
+}  // namespace
+
+// All that stood on the face towards the flow was said to be over.
+TEST_CASE("What runs up the face of a dam and back has not gone over it", "[barrier]") {
+    const bool space = GENERATE(false, true);
+    const auto over = [&](double speed, double* run_up) {
+        Scene scene = channel(4.0);
+        scene.barriers[0] = {};
+        scene.barriers[0].name = "dam";
+        scene.barriers[0].shape = dam_shape();
+        scene.particles.vx.assign(scene.particles.x.size(), speed);
+        scene.bed_law = bed::None{};
+        if (!space) scene.solid.reset();
+        const std::unique_ptr<Simulation> run = make_simulation(scene);
+        run_to(*run, 2.0);
+        const BarrierLoad& load = run->loads()->barriers.at(0);
+        *run_up = load.run_up;
+        return load.overtopped;
+    };
+    double low = 0.0, high = 0.0;
+    CAPTURE(space);
+    CHECK(over(0.0, &low) == 0.0);
+    CHECK(low > 2.5);
+    CHECK(low < 4.75);
+    CHECK(over(10.0, &high) > 1.0);
+    CHECK(high > 4.75);
+}
+
 TEST_CASE("Run-up is what stands at a barrier, not between the legs of a bent one", "[barrier]") {
     Scene scene = channel(4.0);
     scene.barriers[0].outline = {};

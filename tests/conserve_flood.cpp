@@ -311,6 +311,25 @@ TEST_CASE("What is wrong with an inflow of water is told; without friction it ha
     CHECK(darcy.inflows.at(0).speed.front() == Approx(q / h).epsilon(1e-9));
 }
 
+// It was that of the grains' bed law, by which the material stopped there, or got faster for ever.
+TEST_CASE("Water that flows into a mixture has the normal speed of its own friction",
+          "[water][inflow][scene][mixture]") {
+    const FreshFolder folder;
+    const std::string table = table_in(folder.path(), "0,5\n2000,5\n");
+    const double alone = scene_of(plane(), kRough + river(table)).inflows.at(0).speed.front();
+    FakeGis gis = plane();
+    gis.polygons["grains.geojson"] = rectangle(60.0, 3.0, 70.0, 7.0);
+    for (const char* law : {"law = \"coulomb\"\nmu = 0.4\n", "law = \"coulomb\"\nmu = 0.001\n",
+                            "law = \"voellmy\"\nmu = 0.001\nxi = 90\n"}) {
+        INFO(law);
+        const std::string grains =
+            "[material]\ndensity = 1900\n[material.bed]\n" + std::string(law) +
+            "[material.structure]\nlaw = \"drucker_prager\"\nfraction = 0.0\ncohesion = 0.0\n"
+            "friction_angle_deg = 32\nyoung_modulus = 1e6\n[[release]]\noutline = \"grains.geojson\"\ndepth = 0.5\n";
+        CHECK(scene_of(gis, kRough + river(table) + grains).inflows.at(0).speed.front() == alone);
+    }
+}
+
 TEST_CASE("A case of water alone has the same bits on any threads, and when taken up again within a hydrograph",
           "[water][alone][inflow][threads]") {
     const FreshFolder folder;

@@ -422,6 +422,39 @@ TEST_CASE("Structured columns that leave carry out the energy of where they leav
     CHECK(std::abs(budget(first, last).energy_residual) < allowed);
 }
 
+// boundary.holes = "wall" was advised, which structured columns do not have.
+TEST_CASE("What structured columns lose in a hole is a remark without walls", "[structured][holes]") {
+    Scene scene = sliding();
+    scene.particles.vx.assign(scene.particles.x.size(), 12.0);
+    scene.bed_law = bed::None{};
+    for (Index j = 8; j < 24; ++j)
+        for (Index i = 30; i < 40; ++i) scene.bed.at(i, j) = Raster::nodata;
+    scene.holes = holes_of(scene.bed);
+    StructuredRun run(scene);
+    go_to(run, scene.end);
+    REQUIRE(run.flow().status().lost_in_holes > 0.0);
+    REQUIRE_FALSE(run.remarks().empty());
+    CHECK(run.remarks()[0].find("boundary.holes: ") == 0);
+    CHECK(run.remarks()[0].find("wall") == std::string::npos);
+}
+
+// Peaks were those before the last drift: depth at the end was up to 1 % more.
+TEST_CASE("No depth of a structured run is more than its peak", "[structured]") {
+    const bool broken = GENERATE(false, true);
+    Scene scene = sliding(broken ? 0.0 : 1e9);
+    scene.particles.vx.assign(scene.particles.x.size(), 0.0);
+    for (std::size_t p = 0; p < scene.particles.x.size(); ++p)  // squeezed: deeper with every step
+        scene.particles.vx[p] = 4.0 - scene.particles.x[p];
+    if (broken) scene.structure->share = 0.0;
+    StructuredRun run(scene);
+    for (int n = 1; n <= 5; ++n) {
+        go_to(run, 0.02 * n);
+        const Frame frame = run.frame();
+        const Field &depth = *frame.node("depth"), &peak = *frame.node("peak_depth");
+        for (Index k = 0; k < depth.count; ++k) REQUIRE(depth.data[k] <= peak.data[k]);
+    }
+}
+
 TEST_CASE("A barrier's box stops a structured block, which leaves it the momentum", "[structured]") {
     Scene scene = sliding();
     Barrier wall;
@@ -685,6 +718,14 @@ TEST_CASE("A run with water conserves mass and momentum of both, and its water's
     }
     CHECK(volume == Approx(run.water()->status().volume).epsilon(1e-12));
     require_finite(frame);
+}
+
+// Solids that stood on dry ground ended the run at once.
+TEST_CASE("Solids that stand where rain falls are not at rest for good", "[structured][mixture]") {
+    Scene scene = wet_slide();
+    CHECK_FALSE(StructuredRun(scene).may_rest());
+    scene.water->rain = {};
+    CHECK(StructuredRun(scene).may_rest());
 }
 
 TEST_CASE("Rain has come in and what seeps away has left: none of both is negative", "[structured][mixture]") {

@@ -140,6 +140,20 @@ TEST_CASE("A run says how many cells lie across the flow, and which cell would d
     CHECK_THAT(coarse["warnings"].dump(), Contains("cells wide") && Contains("grid.cell = 5 would do"));
 }
 
+// With stage.cell all runs had the same 3D grid, and were said to have converged.
+TEST_CASE("converge remarks on a 3D grid that is the same on all cells", "[converge][stages]") {
+    const PlaneCase scene;
+    const auto said = [&](const std::string& stage) {
+        scene.write("[[stage]]\nmodel = \"solid_flow\"\nuntil = 0.05\n" + stage +
+                    "[[stage]]\nmodel = \"depth_averaged\"\n");
+        const Outcome outcome = scene.frana("converge CASE --out study --cells 10,5 --overwrite --set time.end=0.1");
+        REQUIRE(outcome.code == 0);
+        return json_in(scene.folder() / "study" / "converge.json")["remarks"].dump();
+    };
+    CHECK_THAT(said("cell = 2.5\n"), Contains("stage.0.cell is the same on all cells"));
+    CHECK_THAT(said(""), !Contains("is the same on all cells"));
+}
+
 TEST_CASE("converge varies particles a cell and the step on the finest cell, and says how far the answers lie apart",
           "[converge]") {
     const FreshFolder folder;

@@ -64,6 +64,28 @@ bool crosses(const Surface& barrier, const std::pair<Vec3, Vec3>& box, const Vec
     return enters(barrier, {from.x(), from.y(), z}, {to.x(), to.y(), z}, entry);
 }
 
+/// Whether a place on a barrier is at its crest. What stands on a mesh's sloping face is not yet over it: half a cell
+/// up from there the face still rises. What goes over moves less than a cell between two looks.
+bool at_crest(const Surface& barrier, const Vec2& place, double cell) {
+    if (!barrier.shape) return true;
+    const double here = top_of(barrier, place);
+    const auto top = [&](const Vec2& x) {
+        const double z = top_of(barrier, x);
+        return std::isfinite(z) ? z : here;
+    };
+    const Vec2 x(0.25 * cell, 0.0), y(0.0, 0.25 * cell),
+        rise(top(place + x) - top(place - x), top(place + y) - top(place - y));
+    // Of a cell, over half of one: what sampling makes of a level crest. Along an axis a crest may rise by 1 in 5
+    // itself, and at a mesh's ends the steepest way is that of its edge.
+    constexpr double kLevel = 0.02, kCrest = 0.1;
+    const auto rises = [&](const Vec2& way, double by) {
+        if (way.norm() <= kLevel * cell) return false;
+        const Vec2 half = 0.5 * cell * way.normalized();
+        return top(place + 2.0 * half) > top(place + half) + by * cell;
+    };
+    return !rises(rise, kLevel) && !rises({rise.x(), 0.0}, kCrest) && !rises({0.0, rise.y()}, kCrest);
+}
+
 /// The middle of the footprint, on the bed.
 Vec3 middle_of(const Surface& barrier, const Raster& bed) {
     const auto [low, high] = box_around(barrier);
@@ -397,7 +419,8 @@ void ColumnWatch::sample_at(std::size_t n, const ColumnAt& column, const Vec2* f
         found != over_.end() && std::find(found->second.begin(), found->second.end(), barrier) != found->second.end();
     const bool came_to_it = from != nullptr && !was_over;
     const bool on_it = std::isfinite(top_of(surfaces_[n], column.place)),
-               over = on_it || (came_to_it && crosses(surfaces_[n], boxes_[n], *from, column.place));
+               over = (on_it && at_crest(surfaces_[n], column.place, cell_)) ||
+                      (came_to_it && crosses(surfaces_[n], boxes_[n], *from, column.place));
     BarrierLoad& load = loads_.barriers[n];
     // On the roof of a neighbour it does not run up this one.
     if (on_it || !column.on_barrier) load.reach(column.surface);
@@ -637,7 +660,8 @@ void BarrierWatch::sample(const Mpm3d& flow) {
             std::uint8_t& place = place_of(n, flow.body().points.id[p]);
             if (place == over) continue;
             const double top = top_of(solid, x.head<2>()), volume = flow.body().points.mass[p] / density_;
-            if (!std::isfinite(top) || x.z() < top - cell) {  // outside of it, or below what it spans
+            // Outside of it, below what it spans, or before its crest.
+            if (!std::isfinite(top) || x.z() < top - cell || !at_crest(solid, x.head<2>(), cell)) {
                 place = below;
                 continue;
             }

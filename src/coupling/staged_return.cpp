@@ -62,16 +62,17 @@ bool StagedRun::on_raised(const Vec2& x) const {
                      static_cast<Index>(std::floor((x.y() - g.y0) / g.cell + 0.5)));
 }
 
-/// The nearest cell to x of those that no barrier raises or hides. The place is as far behind its edge as x lies before
-/// it. So not all columns stand on that edge.
+/// Behind the edge of the nearest cell to x of those that no barrier raises or hides. The place is kSpread times as far
+/// behind it as x lies before it. So what stood in one or two cells at a barrier is not heaped on the next ones.
 std::optional<Vec2> StagedRun::nearest_before(const DepartedPoint& point, const Vec2& x,
                                               const std::function<bool(Index, Index)>& allowed) const {
     constexpr Index kFar = 3;          // cells
+    constexpr double kSpread = 4.0;    // so a lake rises by a quarter there, and not by the whole
     constexpr double kWithin = 0.499;  // of a cell: what belongs to its node for certain
     const GridGeometry& g = scene_.bed.geometry;
     const auto i0 = static_cast<Index>(std::floor((x.x() - g.x0) / g.cell + 0.5)),
                j0 = static_cast<Index>(std::floor((x.y() - g.y0) / g.cell + 0.5));
-    std::optional<Vec2> best;
+    std::optional<Vec2> best, edge;
     double least = std::numeric_limits<double>::max();
     for (Index j = std::max<Index>(0, j0 - kFar); j <= std::min(g.ny - 1, j0 + kFar); ++j)
         for (Index i = std::max<Index>(0, i0 - kFar); i <= std::min(g.nx - 1, i0 + kFar); ++i) {
@@ -86,8 +87,18 @@ std::optional<Vec2> StagedRun::nearest_before(const DepartedPoint& point, const 
             const Vec2 place = in_cell(x);
             if ((place - x).norm() >= least || behind_barrier(point.position, place)) continue;
             least = (place - x).norm();
-            best = in_cell(2.0 * place - x);
+            best = in_cell(2.0 * place - x), edge = place;
         }
+    if (!best) return best;
+    for (double spread = kSpread; spread > 1.0; spread -= 1.0) {
+        const Vec2 place = *edge + spread * (*edge - x);
+        const auto i = static_cast<Index>(std::floor((place.x() - g.x0) / g.cell + 0.5)),
+                   j = static_cast<Index>(std::floor((place.y() - g.y0) / g.cell + 0.5));
+        if (i < 0 || j < 0 || i >= g.nx || j >= g.ny || place.x() < g.x0 || place.y() < g.y0 || place.x() > g.x_max() ||
+            place.y() > g.y_max() || is_raised(i, j) || !allowed(i, j) || behind_barrier(point.position, place))
+            continue;
+        return place;
+    }
     return best;
 }
 

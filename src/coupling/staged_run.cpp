@@ -471,6 +471,11 @@ std::vector<std::string> StagedRun::remarks() const {
                     "{:.6g} m3 became columns again, {:.6g} m3 left through its sides; top of the space {:.6g} m",
                     scene_.solid->from, s.points, converted_.mass_later / density, returned_.mass / density,
                     gone > kRoundOff * s.mass_left ? gone / density : 0.0, start_.top));
+    if (ended_ && !(converted_.mass > 0.0))
+        remarks.push_back(fmt::format(
+            "stage.until: the 3D stage ended at {:.6g} s, before anything came to its window: all of the run is "
+            "depth-averaged, and no force is known; give a later stage.until, or a window that the flow reaches before",
+            *scene_.solid->until));
     remark_law(remarks);
     remark_cells(remarks);
     if (const auto piled = map_.remark()) remarks.push_back(*piled);

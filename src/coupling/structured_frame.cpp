@@ -138,6 +138,8 @@ void StructuredRun::node_fields(Frame& frame) {
         const StructuredBody::NodeGround& ground = body.ground[k];
         const double h = StructuredMap::depth_of(body, k), up = map_.climb(k, node.vx, node.vy);
         if (!(h > 0.0)) return;
+        // Peaks were noted before the last drift: what stands there now is one too.
+        peak_depth[n] = std::max(peak_depth[n], h);
         depth[n] = h, surface[n] += h;
         thickness[n] = h / std::sqrt(1.0 + ground.slope_x * ground.slope_x + ground.slope_y * ground.slope_y);
         velocity[3 * n] = node.vx, velocity[3 * n + 1] = node.vy, velocity[3 * n + 2] = up;

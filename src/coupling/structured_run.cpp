@@ -149,11 +149,11 @@ void StructuredRun::accumulate_water() {
     status_.max_speed_on_map = std::max(status_.max_speed_on_map, w.max_speed);
 }
 
-/// Water that is still to come in, or falls on ground that has none yet, is about to begin.
+/// Water that is still to come in is about to begin. Rain may move solids that stand yet.
 bool StructuredRun::may_rest() const {
     if (!both_) return true;
     const WaterFlow& water = both_->water();
-    return !water.sources_go_on() && (solids_ || !water.body().rain);
+    return !water.sources_go_on() && !water.body().rain;
 }
 
 bool StructuredRun::more_comes() const {
@@ -242,7 +242,12 @@ std::vector<std::string> StructuredRun::remarks() const {
     if (!solids_) return {};
     const Breakage now = breakage();
     const StructuredStatus& s = flow().status();
-    std::vector<std::string> remarks = remarks_on_lost(s.lost_in_holes, s.mass + s.mass_left);
+    std::vector<std::string> remarks;
+    if (s.lost_in_holes > 0.0)  // walls in holes, the depth-averaged flow's way out, structured columns do not have
+        remarks.push_back(fmt::format(
+            "boundary.holes: {:.6g} kg, {:.3g} % of the mass, left where the elevation model has no data inside the "
+            "terrain; fill it (gdal_fillnodata.py)",
+            s.lost_in_holes, 100.0 * s.lost_in_holes / (s.mass + s.mass_left)));
     if (s.outrun > 0)
         remarks.push_back(
             fmt::format("water.profile_factor: in {} nodes and steps drag was weaker than what it adds to the "

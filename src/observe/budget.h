@@ -39,16 +39,6 @@ inline Budget budget(const Status& first, const Status& now) {
     return result;
 }
 
-/// Energy that no force gave, over what friction took since the first status and what moves in the later one [1]. 0 where
-/// energy is missing, as it is behind shocks.
-inline double share_made(const Status& first, const Status& now) {
-    constexpr double kRoundOff = 1e-12;  // of a mountain's potential energy, next to which a lake hardly moves
-    const double whole = std::abs(first.potential) + std::abs(now.potential) + std::abs(now.energy_left);
-    const double made = budget(first, now).energy_residual - kRoundOff * whole,
-                 turned = std::max(0.0, now.dissipated - first.dissipated) + now.kinetic;
-    return made > 0.0 && turned > 0.0 ? made / turned : 0.0;
-}
-
 /// What came in after the start: by inflows, and of releases that entered later [kg]. What enters with the first frame
 /// was there at the start, such as a release that is reached at once.
 inline double mass_came_in(const Status& first, const Status& now) { return now.mass_in - first.mass_in; }

@@ -414,10 +414,10 @@ private:
         inflow_.time = std::move(time), inflow_.discharge = std::move(discharge);
     }
 
-    /// What holds the flow at an even speed. Water's friction is a bed law: Darcy and Weisbach's is Voellmy's drag
-    /// alone, with xi = 8 g / f.
+    /// What holds the flow at an even speed. Of water it is its own friction, not the bed law of the grains in it.
+    /// Darcy and Weisbach's is Voellmy's drag alone, with xi = 8 g / f.
     BedLaw law() const {
-        if (!water_ || case_.word("material.bed.law") != "none") return bed_law_at(scene_, inflow_.middle());
+        if (!water_) return bed_law_at(scene_, inflow_.middle());
         const WaterFriction of = water_friction_at(scene_, inflow_.middle(), water_friction(case_));
         if (of.law == WaterFriction::Law::manning) return bed::Manning{of.coefficient};
         if (of.law == WaterFriction::Law::none) return bed::None{};

@@ -1,4 +1,5 @@
 // The loops over the nodes in a step of structured solids. Forces, bed, obstacles and free water change their velocity.
+#include <algorithm>
 #include <cmath>
 
 #include "structured/node_forces.h"
@@ -35,6 +36,7 @@ struct DrivenOf {
     Real law_depth;         ///< for friction: without its 2-cell wave where the surface has none either [m]
     double density;         ///< of what is there [kg/m^3]
     FlatOf<Real> beyond{};  ///< of what drove it, by earth pressure that is not hydrostatic [m/s]
+    FlatOf<Real> thrust{};  ///< and by the grains' surface and all their pressure [kg m/s]
 };
 
 /// A tile and its step.
@@ -64,10 +66,15 @@ struct NodeStep {
     for (int n = 0; n < 4; ++n) store(moved + n, of[n]);
 }
 
+/// Where node k is, or the one `lane` behind it [m].
+Vec2 place_of(const StructuredBody& body, Index k, int lane) {
+    const GridGeometry& g = body.grid.geometry();
+    return {g.x(k % body.grid.stride() - kTile + lane), g.y(k / body.grid.stride() - kTile)};
+}
+
 /// The velocity `v` of node k, or of the one `lane` behind it, without what obstacles stop.
 Vec2 stopped(const StructuredBody& body, Index k, int lane, const Vec2& v) {
-    const GridGeometry& g = body.grid.geometry();
-    const Vec2 place(g.x(k % body.grid.stride() - kTile + lane), g.y(k / body.grid.stride() - kTile));
+    const Vec2 place = place_of(body, k, lane);
     Vec2 left = v;
     for (std::size_t n = 0; n < body.obstacles.size(); ++n) {
         const FaceBehind at = nearest_face(body.obstacles, n, place, body.grid.cell());
@@ -88,13 +95,105 @@ FlatOf<double> stopped(const StructuredBody& body, Index k, const FlatOf<double>
     return all;
 }
 
+/// The axis across the face that stops a node; below 0 where none does.
+int axis_of_face(const StructuredBody& body, Index k, int lane) {
+    for (std::size_t n = 0; n < body.obstacles.size(); ++n) {
+        const FaceBehind at = nearest_face(body.obstacles, n, place_of(body, k, lane), body.grid.cell());
+        if (at.face >= 0) return at.face / 2;
+    }
+    return -1;
+}
+
+/// The grains of a node that may press on faces.
+struct GrainsPressing {
+    double mass, depth, across, density;  ///< [kg], [m], [m/s^2], [kg/m^3]
+    double dt;                            ///< of the step [s]
+};
+
+/// What faces of obstacles do to a node's grains that press on them.
+struct FacesPressed {
+    Vec2 reaction{0, 0};  ///< impulse on the grains [kg m/s]
+    Vec2 brake{0, 0};     ///< most by which friction along the faces changes the velocity [m/s]
+};
+
+/// The obstacle that covers most of a node.
+const Obstacle& obstacle_at(const StructuredBody& body, const Vec2& node) {
+    const double cell = body.grid.cell();
+    return *std::max_element(body.obstacles.begin(), body.obstacles.end(), [&](const Obstacle& a, const Obstacle& b) {
+        return covered(a.low, a.high, node, cell) < covered(b.low, b.high, node, cell);
+    });
+}
+
+/// Whether node k is behind a face, with next to nothing open: its surface is that of the grains before the face.
+bool is_blocked(const StructuredBody& body, Index k) { return body.ground[k].open <= kLeastOpen; }
+
+/// The surface goes on level behind faces (grain_surface.cpp), so that their reaction to earth pressure is a part of
+/// the thrust. It is rho g_z K h^2 / 2 for each metre of them. Between two nodes there is as much of a face as less is
+/// open.
+FacesPressed press_on_faces(const StructuredBody& body, Index k, int lane, const GrainsPressing& grains) {
+    FacesPressed faces;
+    const Index node = k + lane, up = body.grid.stride();
+    if (is_blocked(body, node) || !(grains.depth > 0.0)) return faces;
+    const GridGeometry& g = body.grid.geometry();
+    const Vec2 place = place_of(body, k, lane);
+    const double impulse = 0.5 * grains.density * grains.across * grains.depth * grains.depth * g.cell * grains.dt;
+    const StructuredBody::GrainPressure& pressure = body.grain_pressure[node];
+    for (const int axis : {0, 1})
+        for (const int side : {-1, 1}) {
+            const Index next = node + side * (axis == 0 ? 1 : up);
+            const double beyond = is_blocked(body, next) ? 0.0 : body.ground[next].open;
+            const double length = body.ground[node].open - beyond;
+            if (!(length > 0.0) || body.ground[next].open == 0.0) continue;  // 0: no column has come near it
+            const double normal = length * impulse * (axis == 0 ? pressure.xx : pressure.yy);
+            faces.reaction[axis] -= side * normal;
+            Vec2 behind = place;
+            behind[axis] += side * g.cell;
+            // What sticks is held at the nodes of the face: what is a cell before it may slip.
+            const double friction = obstacle_at(body, behind).friction;
+            if (std::isfinite(friction)) faces.brake[1 - axis] += friction * normal / grains.mass;
+        }
+    return faces;
+}
+
+double lane_of(double a, int) { return a; }
+double lane_of(Double4 a, int n) { return a[n]; }
+void set_lane(double& a, int, double value) { a = value; }
+void set_lane(Double4& a, int n, double value) { a[n] = value; }
+
+double less(double v, double brake) { return std::copysign(std::max(0.0, std::abs(v) - brake), v); }
+
+/// The reaction of faces to the grains of a node, or of four [kg m/s]. Friction along them changes the velocity `v`.
+template <class Real>
+FlatOf<Real> reaction_of_faces(const StructuredBody& body, Index k, const DrivenOf<Real>& node, double dt,
+                               FlatOf<Real>& v) {
+    constexpr int kLanes = sizeof(Real) / sizeof(double);
+    FlatOf<Real> reaction;
+    for (int n = 0; n < kLanes; ++n) {
+        FacesPressed faces = press_on_faces(
+            body, k, n, {lane_of(node.mass, n), lane_of(node.depth, n), lane_of(node.across, n), node.density, dt});
+        if (is_blocked(body, k + n)) {
+            // Its thrust is that of a surface that is not there: what it does to the motion the face does.
+            const int axis = axis_of_face(body, k, n);
+            if (axis >= 0) faces.reaction[axis] = lane_of(axis == 0 ? node.thrust.x : node.thrust.y, n);
+        }
+        set_lane(reaction.x, n, faces.reaction.x()), set_lane(reaction.y, n, faces.reaction.y());
+        if (faces.brake.x() > 0.0) set_lane(v.x, n, less(lane_of(v.x, n), faces.brake.x()));
+        if (faces.brake.y() > 0.0) set_lane(v.y, n, less(lane_of(v.y, n), faces.brake.y()));
+    }
+    return reaction;
+}
+
 /// Obstacles, then friction, and what they took: what an obstacle bears friction need not hold.
 template <class Real, class Law>
 [[gnu::always_inline]] inline void finish(NodeStep<Law>& step, Index k, const GroundOf<Real>& ground,
                                           const DrivenOf<Real>& node) {
     const StructuredBody& body = step.body;
     TallyOf<Real>& tally = step.of(Real{});
-    const FlatOf<Real> free = body.obstacles.empty() ? node.driven : stopped(body, k, node.driven);
+    FlatOf<Real> free = body.obstacles.empty() ? node.driven : stopped(body, k, node.driven);
+    if (body.grains && !body.obstacles.empty()) {
+        const FlatOf<Real> reaction = reaction_of_faces(body, k, node, step.times.velocity_dt, free);
+        tally.obstacles += reaction, tally.pressure += FlatOf<Real>{} - reaction;
+    }
     const FlatOf<Real> left = braked(step.template law_at<Real>(k), body, node.density, ground, node.across,
                                      node.law_depth, node.before, free, step.times);
     tally.friction += node.mass * (left - free);
@@ -158,7 +257,8 @@ template <class Real, class Law>
     if (body.grains) {
         const GrainForceOf<Real> grains = force_of_grains(step, k, ground, node, 1.0);
         const FlatOf<Real> thrust = thrust_of(step, k, grains, 1.0, node.driven);
-        node.driven += thrust, tally.pressure += mass * thrust;
+        node.driven += thrust, node.thrust = mass * thrust;
+        tally.pressure += node.thrust;
         node.beyond = dt * grains.beyond;
         node.across *= grains.weight();
     }
@@ -192,8 +292,8 @@ void move_wet(NodeStep<Law>& step, Index k) {
         const GrainForceOf<double> grains = force_of_grains(step, k, ground, node, 1.0 - met.support);
         const FlatOf<double> thrust = thrust_of(step, k, grains, 1.0 - met.support, node.driven);
         node.driven += thrust, node.across *= grains.weight();
-        node.beyond = dt * grains.beyond;
-        impulse.pressure += met.mass * vec(thrust);
+        node.beyond = dt * grains.beyond, node.thrust = met.mass * thrust;
+        impulse.pressure += vec(node.thrust);
     }
     if (has_water(body, k)) {  // drag uses what friction holds, and friction then what drag does
         const auto& law = step.template law_at<double>(k);

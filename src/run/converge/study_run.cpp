@@ -99,6 +99,23 @@ void remove_tables(const fs::path& out) {
     for (const std::string& name : study_files()) fs::remove(out / name);
 }
 
+/// What the case gives on all cells alike.
+std::vector<std::string> same_on_all(const CaseFile& file) {
+    std::vector<std::string> remarks;
+    if (file.given("particles.count"))
+        remarks.emplace_back(
+            "particles.count is the same on all cells, so finer cells have fewer particles each; per_cell would keep "
+            "their number in a cell");
+    for (Index n = 0; n < file.count("stage"); ++n)
+        for (const char* key : {"cell", "spacing"})
+            if (file.given(fmt::format("stage.{}.{}", n, key)))
+                remarks.push_back(fmt::format(
+                    "stage.{}.{} is the same on all cells, so the 3D grid is refined in none of the runs, and what "
+                    "converges is the columns alone; without it, it goes with grid.cell",
+                    n, key));
+    return remarks;
+}
+
 std::string overrides(const std::vector<std::string>& sets) {
     std::string text;
     for (const std::string& set : sets) text += fmt::format("{}--set {}", text.empty() ? "" : " ", set);
@@ -118,10 +135,7 @@ StudyRun::StudyRun(StudyWishes wishes) : wishes_(std::move(wishes)) {
                         out.string()));
     if (fs::is_directory(out)) lock_.emplace(out);
     require_room_for_tables(wishes_);
-    if (file.given("particles.count"))
-        remarks_.emplace_back(
-            "particles.count is the same on all cells, so finer cells have fewer particles each; per_cell would keep "
-            "their number in a cell");
+    remarks_ = same_on_all(file);
     runs_ = plan_runs(wishes_);
     check_scenes();
     if (!lock_) lock_.emplace(out);

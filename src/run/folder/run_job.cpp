@@ -16,7 +16,7 @@
 #include "io/gdal_writer.h"
 #include "io/netcdf_series.h"
 #include "io/xdmf_writer.h"
-#include "observe/budget.h"
+#include "observe/energy_made.h"
 #include "observe/gauges.h"
 #include "observe/history.h"
 #include "observe/only_fields.h"
@@ -88,7 +88,7 @@ void note_energy_made(RunRecord& record) {
                  share = share_made(record.summary.first, record.summary.last);
     if (share < kMuch) return;
     record.warnings.push_back(
-        fmt::format("energy: found {:.3g} J that nothing gave, {:.3g} % of what friction took and motion has; expected "
+        fmt::format("energy: found {:.3g} J that nothing gave, {:.3g} % of what friction took and motion had; expected "
                     "none: something is too fast, as in pits and bends of one cell; look at the largest speeds, and "
                     "give a smaller grid.cell",
                     made, 100.0 * share));
