@@ -23,7 +23,7 @@ TwoPhaseFlow::TwoPhaseFlow(const TwoPhaseScene& scene)
     expect(scene.columns.grid == scene.water.grid, "columns and water share a grid");
     expect(!alone_ || scene.columns.points.x.empty(), "water alone has no columns beside it");
     FreeWater water{
-        scene.exchange, TwoPhaseDrag(scene.exchange.material), nullptr, nullptr, nullptr, nullptr, 0.0, {}, {}};
+        scene.exchange, TwoPhaseDrag(scene.exchange.material), nullptr, nullptr, nullptr, nullptr, 0.0, {}, {}, {}};
     water_.lend(water);
     columns_.meet(water);
     confine();

@@ -24,19 +24,19 @@ std::string into(const std::string& source, const char* suffix) {
 /// level is none: there most of the band's edge is flat.
 void remark_zero_margin(Scene& scene, const std::string& place) {
     constexpr double kCliff = 1.7320508075688772;  // tangent of 60 degrees
-    constexpr Index kReach = 3;                    // cells over which resampling smears a step
+    constexpr Index kSmeared = 3;                  // cells over which resampling smears a step
     const GridGeometry& g = scene.bed.geometry;
     Index rim = 0, cliffs = 0;
     double highest = 0.0;
     const auto sample = [&](Index i, Index j, Index di, Index dj) {
-        const Index ahead_i = i + kReach * di, ahead_j = j + kReach * dj, behind_i = i - di, behind_j = j - dj;
+        const Index ahead_i = i + kSmeared * di, ahead_j = j + kSmeared * dj, behind_i = i - di, behind_j = j - dj;
         const auto inside = [&](Index a, Index b) { return a >= 0 && b >= 0 && a < g.nx && b < g.ny; };
         if (!inside(ahead_i, ahead_j) || !inside(behind_i, behind_j)) return;
         if (scene.bed.at(behind_i, behind_j) != 0.0 || scene.bed.at(i + di, j + dj) == 0.0) return;
         const double step = std::abs(scene.bed.at(ahead_i, ahead_j));
         if (!std::isfinite(step)) return;
         ++rim;
-        if (step <= kCliff * double(kReach) * g.cell) return;
+        if (step <= kCliff * double(kSmeared) * g.cell) return;
         ++cliffs;
         highest = std::max(highest, step);
     };
