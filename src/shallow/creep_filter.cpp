@@ -15,14 +15,15 @@ namespace {
 
 constexpr double kCellsAPass = 1.5;  ///< each pass begins at so many cells of depth more, and is whole as many later
 constexpr double kCreeps = 0.1;      ///< Froude number up to which flow creeps; from twice that on it does not
+constexpr Index kNear = 3;           ///< so many nodes from walls and margins it is left out
 /// Each pass reads two nodes farther. With more a change could be felt beyond the next tile (rest.h).
 constexpr int kMostPasses = 4;
 
 /// Whether no node within three is dry or of the margin. So a surface next to the margin is never filtered again.
 bool far_inside(const Nodes& nodes, Index k, Index up) {
-    for (Index n = -3; n <= 3; ++n) {
+    for (Index n = -kNear; n <= kNear; ++n) {
         const std::uint8_t* flags = nodes.flags.data() + k + n * up;
-        if (!four_have(flags - 3, kWet, kMargin) || !four_have(flags, kWet, kMargin)) return false;
+        if (!four_have(flags - kNear, kWet, kMargin) || !four_have(flags, kWet, kMargin)) return false;
     }
     return true;
 }
@@ -45,10 +46,21 @@ Double4 shares_of(const Flow& flow, Index k, int pass) {
     return share;
 }
 
-/// The wave of two cells of four nodes far inside, as the first pass has it.
-Double4 wave_of_four(const double* e, Index up) {
+/// Whether node i of `count` between walls is not next to one. There nothing goes across, so what the pressure does not see
+/// would stay.
+bool away_from_walls(Index i, Index count) { return i >= kNear && i + kNear < count; }
+
+/// The wave of two cells of four nodes far inside, as the first pass has it, but across walls next to one.
+Double4 wave_of_four(const Flow& flow, Index k, Index i, Index j) {
+    const Index up = flow.grid.stride();
+    const double* e = flow.nodes.surface.data() + k;
+    const Double4 x = wave_along<Double4>(e, 1), y = wave_along<Double4>(e, up);
     const Double4 both = wave_of_row(wave_along<Double4>(e - 2, up), wave_along<Double4>(e + 2, up));
-    return wave_along<Double4>(e, 1) + wave_along<Double4>(e, up) - both;
+    if (!flow.walls) return x + y - both;
+    Double4 along_x;
+    for (int lane = 0; lane < 4; ++lane) along_x[lane] = away_from_walls(i + lane, flow.grid.nx());
+    const double along_y = away_from_walls(j, flow.grid.ny());
+    return along_x * x + along_y * (y - along_x * both);
 }
 
 }  // namespace
@@ -75,13 +87,12 @@ void CreepFilter::pass(Flow& flow, double max_depth) {
     find_tiles(flow);
     if (tiles_.empty()) return;
     Nodes& nodes = flow.nodes;
-    const Index up = flow.grid.stride();
     for (int pass = 1; pass <= passes; ++pass) {
         for_each_in_parallel(tiles_, [&](Index tile) {
-            for_each_four_of(flow.grid, tile, flow.active_nodes(tile), [&](Index k, Index, Index) {
+            for_each_four_of(flow.grid, tile, flow.active_nodes(tile), [&](Index k, Index i, Index j) {
                 const Double4 none = {}, share = flow.scheme.filter * shares_of(flow, k, pass);
                 const bool some = any(share > none);
-                store(&nodes.wave_x[k], some ? share * wave_of_four(nodes.surface.data() + k, up) : none);
+                store(&nodes.wave_x[k], some ? share * wave_of_four(flow, k, i, j) : none);
             });
         });
         for_each_in_parallel(tiles_, [&](Index tile) {
