@@ -28,22 +28,20 @@ bool far_inside(const Nodes& nodes, Index k, Index up) {
     return true;
 }
 
-/// How much of pass `pass`, the first is 1, four nodes in a row get [1].
-Double4 shares_of(const Flow& flow, Index k, int pass) {
+/// How much more of the filter four nodes in a row get, whatever their depth [1].
+Double4 creep_of_four(const Flow& flow, Index k, Double4 depth, bool bores) {
     const Nodes& nodes = flow.nodes;
-    const Double4 none = {}, one = all(1.0), depth = load(&nodes.depth[k]);
-    const bool bores = senses_bores(flow.scheme);
-    Double4 share = min(max(depth * (1.0 / (kCellsAPass * flow.cell)) - double(pass), none), one);
-    if (!any(share > none)) return none;
+    const Index up = flow.grid.stride();
+    Double4 creeps = {};
     for (int lane = 0; lane < 4; ++lane) {
-        if (!(share[lane] > 0.0)) continue;
+        if (!(depth[lane] > kCellsAPass * flow.cell)) continue;
         const Pair& v = nodes.before[k + lane];
         const double froude = std::sqrt((v.x * v.x + v.y * v.y) / (flow.gravity * depth[lane]));
-        const double creeps = std::clamp(2.0 - froude / kCreeps, 0.0, 1.0);
-        const bool gets = creeps > 0.0 && far_inside(nodes, k + lane, flow.grid.stride());
-        share[lane] *= gets ? creeps * (bores ? away_from_bores(nodes, k + lane, flow.grid.stride()) : 1.0) : 0.0;
+        const double share = std::clamp(2.0 - froude / kCreeps, 0.0, 1.0);
+        if (share > 0.0 && far_inside(nodes, k + lane, up))
+            creeps[lane] = bores ? share * away_from_bores(nodes, k + lane, up) : share;
     }
-    return share;
+    return creeps;
 }
 
 /// Whether node i of `count` between walls is not next to one. There nothing goes across, so what the pressure does not see
@@ -65,20 +63,26 @@ Double4 wave_of_four(const Flow& flow, Index k, Index i, Index j) {
 
 }  // namespace
 
-CreepFilter::CreepFilter(const Scene& scene)
+CreepFilter::CreepFilter(const Scene& scene, const TileGrid& grid)
     : resisted_(!std::holds_alternative<bed::None>(scene.bed_law) ||
-                !std::holds_alternative<rheology::None>(scene.rheology)) {}
+                !std::holds_alternative<rheology::None>(scene.rheology)),
+      creeps_(grid.size()) {}
 
 void CreepFilter::find_tiles(const Flow& flow) {
-    creeps_.assign(flow.active.work.size(), 0), tiles_.clear();
+    some_.assign(flow.active.work.size(), 0), tiles_.clear();
+    const bool bores = senses_bores(flow.scheme);
     for_each_work_tile(flow.active, [&](Index n, Index tile) {
         Mask4 some = {};
-        for_each_four_of(flow.grid, tile, flow.active_nodes(tile),
-                         [&](Index k, Index, Index) { some |= shares_of(flow, k, 1) > Double4{}; });
-        creeps_[static_cast<std::size_t>(n)] = any(some);
+        for_each_four_of(flow.grid, tile, flow.active_nodes(tile), [&](Index k, Index, Index) {
+            const Double4 none = {}, depth = load(&flow.nodes.depth[k]);
+            const bool deep = any(depth > kCellsAPass * flow.cell);
+            const Double4 creeps = deep ? creep_of_four(flow, k, depth, bores) : none;
+            store(&creeps_[k], creeps), some |= creeps > none;
+        });
+        some_[static_cast<std::size_t>(n)] = any(some);
     });
-    for (std::size_t n = 0; n < creeps_.size(); ++n)
-        if (creeps_[n]) tiles_.push_back(flow.active.work[n]);
+    for (std::size_t n = 0; n < some_.size(); ++n)
+        if (some_[n]) tiles_.push_back(flow.active.work[n]);
 }
 
 void CreepFilter::pass(Flow& flow, double max_depth) {
@@ -87,12 +91,14 @@ void CreepFilter::pass(Flow& flow, double max_depth) {
     find_tiles(flow);
     if (tiles_.empty()) return;
     Nodes& nodes = flow.nodes;
+    const double per_pass = 1.0 / (kCellsAPass * flow.cell);
     for (int pass = 1; pass <= passes; ++pass) {
         for_each_in_parallel(tiles_, [&](Index tile) {
             for_each_four_of(flow.grid, tile, flow.active_nodes(tile), [&](Index k, Index i, Index j) {
-                const Double4 none = {}, share = flow.scheme.filter * shares_of(flow, k, pass);
+                const Double4 none = {}, one = all(1.0), layers = load(&nodes.depth[k]) * per_pass;
+                const Double4 share = load(&creeps_[k]) * min(max(layers - double(pass), none), one);
                 const bool some = any(share > none);
-                store(&nodes.wave_x[k], some ? share * wave_of_four(flow, k, i, j) : none);
+                store(&nodes.wave_x[k], some ? flow.scheme.filter * share * wave_of_four(flow, k, i, j) : none);
             });
         });
         for_each_in_parallel(tiles_, [&](Index tile) {

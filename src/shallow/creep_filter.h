@@ -12,7 +12,7 @@ namespace frana {
 class CreepFilter {
 public:
     /// Without friction and stress nothing creeps for long: then it does nothing.
-    explicit CreepFilter(const Scene& scene);
+    CreepFilter(const Scene& scene, const TileGrid& grid);
 
     /// After filter(), before shoreline(). `max_depth`: of the flow [m]; below 1.5 cells nothing is done.
     void pass(Flow& flow, double max_depth);
@@ -20,9 +20,10 @@ public:
 private:
     void find_tiles(const Flow& flow);
 
-    bool resisted_;                     ///< the flow has friction or stress
-    std::vector<std::uint8_t> creeps_;  ///< by position in the work list: has nodes that are filtered again
-    std::vector<Index> tiles_;          ///< those that have
+    bool resisted_;                   ///< the flow has friction or stress
+    LazyArray<double> creeps_;        ///< how much more of the filter nodes get, whatever their depth [1]
+    std::vector<std::uint8_t> some_;  ///< by position in the work list: has such nodes
+    std::vector<Index> tiles_;        ///< those that have
 };
 
 }  // namespace frana

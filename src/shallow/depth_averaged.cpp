@@ -45,7 +45,7 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     : flow_(scene),
       transfer_(make_transfer(scene)),
       grid_update_(make_grid_update(scene)),
-      creep_filter_(scene),
+      creep_filter_(scene, flow_.grid),
       splitter_(least_split_mass(scene), grown_mass(scene)),
       peaks_(flow_.grid),
       shown_(NodeBox::all(scene.bed.geometry)),
