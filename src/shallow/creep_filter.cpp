@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 #include "base/simd.h"
 #include "shallow/shock.h"
@@ -62,11 +61,6 @@ Double4 wave_of_four(const Flow& flow, Index k, Index i, Index j) {
 }
 
 }  // namespace
-
-CreepFilter::CreepFilter(const Scene& scene, const TileGrid& grid)
-    : resisted_(!std::holds_alternative<bed::None>(scene.bed_law) ||
-                !std::holds_alternative<rheology::None>(scene.rheology)),
-      creeps_(grid.size()) {}
 
 void CreepFilter::find_tiles(const Flow& flow) {
     some_.assign(flow.active.work.size(), 0), tiles_.clear();

@@ -11,8 +11,8 @@ namespace frana {
 /// than two cells would grow there.
 class CreepFilter {
 public:
-    /// Without friction and stress nothing creeps for long: then it does nothing.
-    CreepFilter(const Scene& scene, const TileGrid& grid);
+    /// `resisted`: the flow has friction or stress. Without them nothing creeps for long, and nothing is done.
+    CreepFilter(bool resisted, const TileGrid& grid) : resisted_(resisted), creeps_(grid.size()) {}
 
     /// After filter(), before shoreline(). `max_depth`: of the flow [m]; below 1.5 cells nothing is done.
     void pass(Flow& flow, double max_depth);
@@ -20,7 +20,7 @@ public:
 private:
     void find_tiles(const Flow& flow);
 
-    bool resisted_;                   ///< the flow has friction or stress
+    bool resisted_;
     LazyArray<double> creeps_;        ///< how much more of the filter nodes get, whatever their depth [1]
     std::vector<std::uint8_t> some_;  ///< by position in the work list: has such nodes
     std::vector<Index> tiles_;        ///< those that have

@@ -39,13 +39,17 @@ double grown_mass(const Scene& scene) {
     return scene.erodible ? kGrown * largest_column(scene) * scene.density : std::numeric_limits<double>::infinity();
 }
 
+bool is_resisted(const Scene& scene) {
+    return !std::holds_alternative<bed::None>(scene.bed_law) || !std::holds_alternative<rheology::None>(scene.rheology);
+}
+
 }  // namespace
 
 DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     : flow_(scene),
       transfer_(make_transfer(scene)),
       grid_update_(make_grid_update(scene)),
-      creep_filter_(scene, flow_.grid),
+      creep_filter_(is_resisted(scene), flow_.grid),
       splitter_(least_split_mass(scene), grown_mass(scene)),
       peaks_(flow_.grid),
       shown_(NodeBox::all(scene.bed.geometry)),

@@ -53,11 +53,13 @@ void raise_surface(StructuredBody& body) {
     Flow& flow = body.flow;
     finish_deposit(flow);
     if (!body.obstacles.empty()) widen_at_obstacles(body);
-    depth_pass(flow, {0.0, Vec2(0, 0)});
+    const NodeSums sums = depth_pass(flow, {0.0, Vec2(0, 0)});
     if (!body.obstacles.empty()) level_behind_obstacles(body);
     mark_margin(flow);
     shock_pass(flow);
     filter(flow);
+    // Next to a face, as to a wall, what the pressure does not see would stay.
+    if (body.obstacles.empty()) body.creep_filter.pass(flow, sums.max_depth);
     if (!body.obstacles.empty()) plain_at_obstacles(body);
     shoreline(flow);
 }

@@ -14,6 +14,7 @@
 #include "mpm/ledger.h"
 #include "mpm/step_clock.h"
 #include "observe/frame.h"
+#include "shallow/creep_filter.h"
 #include "shallow/flow.h"
 #include "structured/earth_pressure.h"
 #include "structured/ground.h"
@@ -163,7 +164,8 @@ struct StructuredBody {
     std::vector<StructuredTally> tallies;  ///< of the step, per tile of the work list
     std::vector<Obstacle> obstacles;
     Rankine rankine;
-    BedLaw bed_law;  ///< where flow.laws has none
+    BedLaw bed_law;            ///< where flow.laws has none
+    CreepFilter creep_filter;  ///< of the grains' surface
     double density, share, gravity;
     bool grains = false;     ///< some column is broken or has grains besides its structure
     bool has_exits = false;  ///< some node that was checked has no ground

@@ -1,6 +1,7 @@
 // The loops over the nodes in a step of structured solids. Forces, bed, obstacles and free water change their velocity.
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "structured/node_forces.h"
 #include "structured/node_water.h"
@@ -166,7 +167,7 @@ double less(double v, double brake) { return std::copysign(std::max(0.0, std::ab
 template <class Real>
 FlatOf<Real> reaction_of_faces(const StructuredBody& body, Index k, const DrivenOf<Real>& node, double dt,
                                FlatOf<Real>& v) {
-    constexpr int kLanes = sizeof(Real) / sizeof(double);
+    constexpr int kLanes = std::is_same_v<Real, double> ? 1 : 4;
     FlatOf<Real> reaction;
     for (int n = 0; n < kLanes; ++n) {
         FacesPressed faces = press_on_faces(
