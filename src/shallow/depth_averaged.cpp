@@ -40,7 +40,8 @@ double grown_mass(const Scene& scene) {
 }
 
 bool is_resisted(const Scene& scene) {
-    return !std::holds_alternative<bed::None>(scene.bed_law) || !std::holds_alternative<rheology::None>(scene.rheology);
+    return scene.bed_laws() || scene.rheologies() || !std::holds_alternative<bed::None>(scene.bed_law) ||
+           !std::holds_alternative<rheology::None>(scene.rheology);
 }
 
 }  // namespace

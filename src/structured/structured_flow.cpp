@@ -41,7 +41,7 @@ StructuredBody::StructuredBody(const StructuredScene& scene)
       obstacles(scene.obstacles),
       rankine(scene.hydrostatic ? Rankine{} : Rankine{law.active(), law.passive()}),
       bed_law(scene.bed_law),
-      creep_filter(!std::holds_alternative<bed::None>(scene.bed_law), grid),
+      creep_filter(scene.laws || !std::holds_alternative<bed::None>(scene.bed_law), grid),
       density(scene.density),
       share(scene.share),
       gravity(scene.gravity),
