@@ -54,7 +54,7 @@ Double4 wave_of_four(const Flow& flow, Index k, Index i, Index j) {
     const Double4 x = wave_along<Double4>(e, 1), y = wave_along<Double4>(e, up);
     const Double4 both = wave_of_row(wave_along<Double4>(e - 2, up), wave_along<Double4>(e + 2, up));
     if (!flow.walls) return x + y - both;
-    Double4 along_x;
+    Double4 along_x = {};
     for (int lane = 0; lane < 4; ++lane) along_x[lane] = away_from_walls(i + lane, flow.grid.nx());
     const double along_y = away_from_walls(j, flow.grid.ny());
     return along_x * x + along_y * (y - along_x * both);
