@@ -140,6 +140,20 @@ TEST_CASE("A release of several polygons is one row of a GIS, with the volume an
     }
 }
 
+// The project of QGIS had no place for several polygons as the first row, and the run broke off.
+TEST_CASE("A run whose only release is of several polygons ends with all of its files", "[program][late][gis]") {
+    const PlaneCase plane;
+    write_text(plane.folder() / "release.geojson",
+               R"({"type": "Feature", "properties": {}, "geometry": {"type": "MultiPolygon", "coordinates": [
+                  [[[30, 40], [40, 40], [40, 60], [30, 60], [30, 40]]],
+                  [[[42, 40], [50, 40], [50, 60], [42, 60], [42, 40]]]]}})");
+    const fs::path dir = plane.folder() / "out";
+    REQUIRE(plane.frana("run CASE --quiet --set 'output.formats=[\"geotiff\"]' --out " + dir.string()).code == 0);
+    CHECK(fs::exists(dir / "run.qgz"));
+    CHECK(fs::exists(dir / "report.md"));
+    CHECK(Layer(dir / "results.gpkg", "release").get().GetFeatureCount() == 1);
+}
+
 TEST_CASE("Ground under releases is left out of a comparison with two surveys, under later ones too",
           "[program][late][compare]") {
     const Releases plane;

@@ -33,7 +33,7 @@ struct Creep {
 }  // namespace
 
 // A wave on particles that is shorter than two cells shows on nodes as a longer one. The pressure of that moves particles
-// wrongly. With one pass of the filter the noise of 0.1 % at the start is 0.6, 2 and 0.2 % after 20 s, and 8 to 12 % after
+// wrongly. The noise is 0.1 % at the start. With one pass of the filter it is 0.6, 2 and 0.2 % after 20 s, and 8 to 12 % after
 // 80 s. The mean speeds are 15, 140 and 5 mm/s, where surface waves have 1.4 m/s.
 TEST_CASE("In a deep layer that creeps no wave shorter than two cells grows", "[verify][creep]") {
     const auto [fall, yield_stress] = GENERATE(Creep{0.003, 0.0}, Creep{0.03, 0.0}, Creep{0.03, 50.0});

@@ -65,7 +65,7 @@ bool crosses(const Surface& barrier, const std::pair<Vec3, Vec3>& box, const Vec
 }
 
 /// Whether a place on a barrier is at its crest. What stands on a mesh's sloping face is not yet over it: half a cell
-/// up from there the face still rises. What goes over moves less than a cell between two looks.
+/// up from there the face still rises. What goes over moves less than a cell between two samples.
 bool at_crest(const Surface& barrier, const Vec2& place, double cell) {
     if (!barrier.shape) return true;
     const double here = top_of(barrier, place);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "coupling/staged_run.h"
 #include "terrain/part_of.h"
@@ -14,6 +15,14 @@ bool in_hole_wall(const Flow& flow, const Vec2& x) {
     const GridGeometry& g = flow.grid.geometry();
     if (!(x.x() >= g.x0 && x.x() <= g.x_max() && x.y() >= g.y0 && x.y() <= g.y_max())) return false;
     return flow.bed.exit[flow.grid.nearest((x.x() - g.x0) / g.cell, (x.y() - g.y0) / g.cell)] == kWall;
+}
+
+/// Of the node nearest to x; it may lie beyond the grid.
+std::pair<Index, Index> cell_at(const GridGeometry& g, const Vec2& x) {
+    const auto nearest = [&](double at, double first) {
+        return static_cast<Index>(std::floor((at - first) / g.cell + 0.5));
+    };
+    return {nearest(x.x(), g.x0), nearest(x.y(), g.y0)};
 }
 
 }  // namespace
@@ -57,9 +66,17 @@ bool StagedRun::is_raised(Index i, Index j) const {
 }
 
 bool StagedRun::on_raised(const Vec2& x) const {
+    const auto [i, j] = cell_at(scene_.bed.geometry, x);
+    return is_raised(i, j);
+}
+
+/// Whether a point's column may stand at x: on the terrain, in an allowed cell that no barrier raises or hides from it.
+bool StagedRun::may_stand(const DepartedPoint& point, const Vec2& x,
+                          const std::function<bool(Index, Index)>& allowed) const {
     const GridGeometry& g = scene_.bed.geometry;
-    return is_raised(static_cast<Index>(std::floor((x.x() - g.x0) / g.cell + 0.5)),
-                     static_cast<Index>(std::floor((x.y() - g.y0) / g.cell + 0.5)));
+    const auto [i, j] = cell_at(g, x);
+    const bool inside = x.x() >= g.x0 && x.y() >= g.y0 && x.x() <= g.x_max() && x.y() <= g.y_max();
+    return inside && !is_raised(i, j) && allowed(i, j) && !behind_barrier(point.position, x);
 }
 
 /// Behind the edge of the nearest cell to x of those that no barrier raises or hides. The place is kSpread times as far
@@ -67,11 +84,10 @@ bool StagedRun::on_raised(const Vec2& x) const {
 std::optional<Vec2> StagedRun::nearest_before(const DepartedPoint& point, const Vec2& x,
                                               const std::function<bool(Index, Index)>& allowed) const {
     constexpr Index kFar = 3;          // cells
-    constexpr double kSpread = 4.0;    // so a lake rises by a quarter there, and not by the whole
+    constexpr double kSpread = 4.0;    // chosen: a lake rises by a quarter there, and not by the whole
     constexpr double kWithin = 0.499;  // of a cell: what belongs to its node for certain
     const GridGeometry& g = scene_.bed.geometry;
-    const auto i0 = static_cast<Index>(std::floor((x.x() - g.x0) / g.cell + 0.5)),
-               j0 = static_cast<Index>(std::floor((x.y() - g.y0) / g.cell + 0.5));
+    const auto [i0, j0] = cell_at(g, x);
     std::optional<Vec2> best, edge;
     double least = std::numeric_limits<double>::max();
     for (Index j = std::max<Index>(0, j0 - kFar); j <= std::min(g.ny - 1, j0 + kFar); ++j)
@@ -92,12 +108,7 @@ std::optional<Vec2> StagedRun::nearest_before(const DepartedPoint& point, const 
     if (!best) return best;
     for (double spread = kSpread; spread > 1.0; spread -= 1.0) {
         const Vec2 place = *edge + spread * (*edge - x);
-        const auto i = static_cast<Index>(std::floor((place.x() - g.x0) / g.cell + 0.5)),
-                   j = static_cast<Index>(std::floor((place.y() - g.y0) / g.cell + 0.5));
-        if (i < 0 || j < 0 || i >= g.nx || j >= g.ny || place.x() < g.x0 || place.y() < g.y0 || place.x() > g.x_max() ||
-            place.y() > g.y_max() || is_raised(i, j) || !allowed(i, j) || behind_barrier(point.position, place))
-            continue;
-        return place;
+        if (may_stand(point, place, allowed)) return place;
     }
     return best;
 }

@@ -83,6 +83,7 @@ private:
     void sample_columns();
     void step_columns_alone(double until);
     Vec2 place_of_column(const DepartedPoint& point, const Vec2& to);
+    bool may_stand(const DepartedPoint& point, const Vec2& x, const std::function<bool(Index, Index)>& allowed) const;
     std::optional<Vec2> nearest_before(const DepartedPoint& point, const Vec2& x,
                                        const std::function<bool(Index, Index)>& allowed) const;
     bool is_raised(Index i, Index j) const;

@@ -11,6 +11,7 @@
 
 #include "base/constants.h"
 #include "base/error.h"
+#include "base/shell_word.h"
 #include "base/types.h"
 
 namespace frana::gdal {
@@ -170,20 +171,20 @@ std::string scale_line(const Place& place, double metres) {
             if (flat.exportToProj4(&proj) == OGRERR_NONE && proj) crs = proj;
             CPLFree(proj);
         }
-        if (!crs.empty()) crs = "-a_srs " + shell(crs) + " ";
+        if (!crs.empty()) crs = "-a_srs " + shell_word(crs) + " ";
     }
     const std::string target = sibling(place.file, "_metres");
     const std::string between = std::filesystem::path(target).replace_extension(".vrt").string();
-    std::string before, source = shell(place.file.string());
+    std::string before, source = shell_word(place.file.string());
     if (place.scaled) {
         const std::filesystem::path name = sibling(place.file, "_unscaled");
-        const std::string plain = shell(std::filesystem::path(name).replace_extension(".vrt").string());
+        const std::string plain = shell_word(std::filesystem::path(name).replace_extension(".vrt").string());
         before = fmt::format("gdal_translate -of VRT -unscale -ot Float64 {} {} && ", source, plain), source = plain;
     }
     return fmt::format(
         "{}gdalbuildvrt {}{} {} && gdal_translate -ot Float32 -scale 0 1 0 {:.12g} -a_nodata -9999 "
         "{} {}",
-        before, crs, shell(between), source, metres, shell(between), shell(target));
+        before, crs, shell_word(between), source, metres, shell_word(between), shell_word(target));
 }
 
 [[noreturn]] void refuse_unit(const Place& place, const char* what, const Unit& unit) {
@@ -337,8 +338,8 @@ void require_metre_values(const Place& place) {
 
 std::string warp_line(const std::filesystem::path& file, const std::string& target_crs, const std::string& suffix) {
     return fmt::format("gdalwarp {}-r cubic -ot Float32 -dstnodata -9999 {} {}",
-                       target_crs.empty() ? "" : "-t_srs " + target_crs + " ", shell(file.string()),
-                       shell(sibling(file, suffix)));
+                       target_crs.empty() ? "" : "-t_srs " + target_crs + " ", shell_word(file.string()),
+                       shell_word(sibling(file, suffix)));
 }
 
 }  // namespace frana::gdal

@@ -116,6 +116,7 @@ constexpr KindOfShape kKinds[] = {{"frana_polygon", wkbPolygon},
                                   {"frana_line", wkbLineString},
                                   {"frana_point", wkbPoint},
                                   {"frana_polygon", wkbMultiPolygon}};
+static_assert(std::size(kKinds) == std::variant_size_v<decltype(AttributedShape::shape)>, "one for each kind");
 
 /// Of the shapes of a layer: several polygons where one of them is.
 const KindOfShape& kind_of(const std::vector<AttributedShape>& shapes) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/shell_word.h"
 #include "io/gdal_crs.h"
 #include "io/gdal_onto.h"
 #include "io/gdal_reader.h"
@@ -192,7 +193,7 @@ Raster in_pixels(const std::filesystem::path& file, const std::array<double, 4>&
             fmt::format("{}: its pixels are {:g} m by {:g} m; expected square pixels; run: gdalwarp -tr "
                         "{:.12g} {:.12g} -r bilinear -ot Float32 -dstnodata -9999 {} {}",
                         file.string(), raster.x_axis().size, raster.y_axis().size, edge, edge,
-                        gdal::shell(file.string()), gdal::shell(gdal::sibling(file, "_square"))));
+                        shell_word(file.string()), shell_word(gdal::sibling(file, "_square"))));
     }
     Raster out = raster.read_raster(i, j, nx, ny);
     if (out.crs_wkt.empty()) out.crs_wkt = crs_wkt;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/shell_word.h"
 #include "io/gdal_ascii.h"
 #include "io/gdal_crs.h"
 
@@ -28,7 +29,7 @@ RasterFile::RasterFile(const std::filesystem::path& file, Meaning meaning, std::
         throw UserError(fmt::format("{}: holds no raster band{}", file_.string(),
                                     inner ? fmt::format(" but subdatasets; expected one raster; run: gdal_translate "
                                                         "{} {}",
-                                                        shell(inner), shell(sibling(file_, "_1")))
+                                                        shell_word(inner), shell_word(sibling(file_, "_1")))
                                           : std::string("; expected a raster such as a GeoTIFF")));
     }
     band_ = dataset_->GetRasterBand(1);
@@ -37,7 +38,7 @@ RasterFile::RasterFile(const std::filesystem::path& file, Meaning meaning, std::
         throw UserError(
             fmt::format("{}: holds complex numbers; expected real ones; run: gdal_translate -ot Float64 "
                         "{} {}",
-                        file_.string(), shell(file_.string()), shell(sibling(file_, "_real"))));
+                        file_.string(), shell_word(file_.string()), shell_word(sibling(file_, "_real"))));
     // GDAL takes alpha for a mask in integer rasters only; gdalwarp -dstalpha makes it in any.
     if (bands > 1 && dataset_->GetRasterBand(bands)->GetColorInterpretation() == GCI_AlphaBand)
         alpha_ = dataset_->GetRasterBand(bands);
@@ -58,11 +59,11 @@ void RasterFile::take_geotransform() {
     double t[6];
     if (dataset_->GetGeoTransform(t) != CE_None) {
         const bool points = dataset_->GetGCPCount() > 0;
-        throw UserError(fmt::format("{}: has no georeference; expected the map position of its pixels; run: {}",
-                                    file_.string(),
-                                    points ? straight_line(file_)
-                                           : fmt::format("gdal_translate -a_ullr XMIN YMAX XMAX YMIN {} {}",
-                                                         shell(file_.string()), shell(sibling(file_, "_placed")))));
+        throw UserError(
+            fmt::format("{}: has no georeference; expected the map position of its pixels; run: {}", file_.string(),
+                        points ? straight_line(file_)
+                               : fmt::format("gdal_translate -a_ullr XMIN YMAX XMAX YMIN {} {}",
+                                             shell_word(file_.string()), shell_word(sibling(file_, "_placed")))));
     }
     const Index nx = dataset_->GetRasterXSize(), ny = dataset_->GetRasterYSize();
     // A thousandth of a pixel over the whole raster is not a rotation but the round-off of some writer.
@@ -82,8 +83,8 @@ void RasterFile::take_geotransform() {
             fmt::format("{}: its georeference (geotransform {:g} {:g} {:g}, {:g} {:g} {:g}) is no place on "
                         "a map; expected pixels of a size in metres; run: gdal_translate -a_ullr XMIN YMAX "
                         "XMAX YMIN {} {}",
-                        file_.string(), t[0], t[1], t[2], t[3], t[4], t[5], shell(file_.string()),
-                        shell(sibling(file_, "_placed"))));
+                        file_.string(), t[0], t[1], t[2], t[3], t[4], t[5], shell_word(file_.string()),
+                        shell_word(sibling(file_, "_placed"))));
     south_up_ = t[5] > 0.0;
     x_ = {nx, t[0], t[1]};
     y_ = {ny, south_up_ ? t[3] : t[3] + double(ny) * t[5], std::abs(t[5])};
@@ -165,16 +166,16 @@ void RasterFile::refuse_sentinels(const std::vector<double>& raw, Index i, Index
         if (std::isnan(raw[k]) || !sentinel(raw[k])) continue;
         const Index column = i + Index(k) % nx, row = first_row + Index(k) / nx;
         const Index j = south_up_ ? row : y_.count - 1 - row;
-        throw UserError(
-            fmt::format("{}: pixel {} {} (column and row from the first pixel of the file), at {:.10g} {:.10g}, holds "
-                        "{:g}, which "
-                        "cannot be {} and is not declared as nodata; if it stands for no data, run: gdal_translate "
-                        "-a_nodata {} "
-                        "{} {}",
-                        file_.string(), column, row, x_.start + (double(column) + 0.5) * x_.size,
-                        y_.start + (double(j) + 0.5) * y_.size, raw[k],
-                        meaning_ == Meaning::elevation ? "an elevation in metres" : "a measured value",
-                        fmt::format("{:.17g}", raw[k]), shell(file_.string()), shell(sibling(file_, "_nodata"))));
+        throw UserError(fmt::format(
+            "{}: pixel {} {} (column and row from the first pixel of the file), at {:.10g} {:.10g}, holds "
+            "{:g}, which "
+            "cannot be {} and is not declared as nodata; if it stands for no data, run: gdal_translate "
+            "-a_nodata {} "
+            "{} {}",
+            file_.string(), column, row, x_.start + (double(column) + 0.5) * x_.size,
+            y_.start + (double(j) + 0.5) * y_.size, raw[k],
+            meaning_ == Meaning::elevation ? "an elevation in metres" : "a measured value",
+            fmt::format("{:.17g}", raw[k]), shell_word(file_.string()), shell_word(sibling(file_, "_nodata"))));
     }
 }
 

@@ -69,7 +69,7 @@ Dataset open(const std::filesystem::path& file, unsigned kind) {
                         file.string(), wanted));
     throw UserError(fmt::format("{}: cannot be opened ({}); expected {}; try `{} {}`", file.string(),
                                 messages.reason("unknown format"), wanted, raster ? "gdalinfo" : "ogrinfo -al -so",
-                                shell(file.string())));
+                                shell_word(file.string())));
 }
 
 Dataset warp(const std::string& target, GDALDataset& source, const std::vector<std::string>& arguments) {
@@ -94,8 +94,6 @@ std::string taken_from_memory(const std::string& held) {
     return bytes ? std::string(reinterpret_cast<const char*>(bytes.get()), static_cast<std::size_t>(length))
                  : std::string();
 }
-
-std::string shell(const std::string& text) { return shell_word(text); }
 
 std::string sibling(const std::filesystem::path& file, const std::string& suffix) {
     return (file.parent_path() / (file.stem().string() + suffix + ".tif")).string();

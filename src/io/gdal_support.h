@@ -59,9 +59,6 @@ std::string name_in_memory(const std::string& end);
 /// The bytes of a file that GDAL made in its memory ("/vsimem/..."), which is freed. None where there is no such file.
 std::string taken_from_memory(const std::string& held);
 
-/// A file name for a shell, quoted only where needed.
-std::string shell(const std::string& text);
-
 /// dem.tif, "_utm" -> dem_utm.tif: a name next to the file for the line that cures it. Always a GeoTIFF.
 std::string sibling(const std::filesystem::path& file, const std::string& suffix);
 

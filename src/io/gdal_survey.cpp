@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/layer_name.h"
+#include "base/shell_word.h"
 #include "io/gdal_crs.h"
 #include "io/gdal_onto.h"
 #include "io/gdal_reader.h"
@@ -52,11 +53,10 @@ bool opens_as(const fs::path& file, unsigned kind) {
     const char* code = terrain.GetAuthorityCode(nullptr);
     const std::string name = authority && code ? fmt::format("{}:{}", authority, code) : "THE_SURVEY'S_CRS";
     const std::string target = (file.parent_path() / (file.stem().string() + "_crs")).string();
-    const std::string line =
-        program == "ogr2ogr"
-            ? fmt::format("ogr2ogr -a_srs {} {} {}", name, gdal::shell(target + ".gpkg"), gdal::shell(file.string()))
-            : fmt::format("gdal_translate -a_srs {} {} {}", name, gdal::shell(file.string()),
-                          gdal::shell(target + ".tif"));
+    const std::string line = program == "ogr2ogr" ? fmt::format("ogr2ogr -a_srs {} {} {}", name,
+                                                                shell_word(target + ".gpkg"), shell_word(file.string()))
+                                                  : fmt::format("gdal_translate -a_srs {} {} {}", name,
+                                                                shell_word(file.string()), shell_word(target + ".tif"));
     throw UserError(
         fmt::format("{}: {}; expected a survey that says where on the earth it lies, as the terrain does ({}); if "
                     "it has the terrain's coordinates, run: {}",

@@ -44,8 +44,8 @@ void write_class_geotiff(const std::filesystem::path& target, const GridGeometry
 void write_footprint(const std::filesystem::path& target, const Raster& covered_depth, double threshold,
                      const std::map<std::string, double>& attributes = {});
 
-/// How such a file places its outlines: in a CRS that it names, in degrees, or (no CRS, or none that PROJ can bring to
-/// degrees) in coordinates of the map that a GIS takes for degrees.
+/// How such a file places its outlines: in a CRS that it names, in degrees, or in unnamed coordinates of the map. A GIS
+/// takes those for degrees. They are left where there is no CRS, or none that PROJ can bring to degrees.
 enum class FootprintPlace { named, degrees, unnamed };
 FootprintPlace footprint_place(const std::string& crs_wkt);
 

@@ -43,8 +43,8 @@ Double4 creep_of_four(const Flow& flow, Index k, Double4 depth, bool bores) {
     return creeps;
 }
 
-/// Whether node i of `count` between walls is not next to one. There nothing goes across, so what the pressure does not see
-/// would stay.
+/// Whether node i of `count` between walls is not next to one. There nothing goes across, so a lump without a pressure
+/// gradient would stay.
 bool away_from_walls(Index i, Index count) { return i >= kNear && i + kNear < count; }
 
 /// The wave of two cells of four nodes far inside, as the first pass has it, but across walls next to one.

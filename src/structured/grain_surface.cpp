@@ -58,7 +58,7 @@ void raise_surface(StructuredBody& body) {
     mark_margin(flow);
     shock_pass(flow);
     filter(flow);
-    // Next to a face, as to a wall, what the pressure does not see would stay.
+    // Next to a face, as to a wall, a lump without a pressure gradient would stay.
     if (body.obstacles.empty()) body.creep_filter.pass(flow, sums.max_depth);
     if (!body.obstacles.empty()) plain_at_obstacles(body);
     shoreline(flow);

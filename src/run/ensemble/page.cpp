@@ -123,8 +123,7 @@ std::string hazard_rule(const HazardTable& table) {
     if (table.event_years)
         return fmt::format(
             "The runs are of one event, which comes back in {:g} years (`return_period`). A strength comes back in "
-            "that "
-            "time over the share of the runs that reach it. A place has the greatest class of all strengths.",
+            "that time over the share of the runs that reach it. A place has the greatest class of all strengths.",
             *table.event_years);
     return fmt::format(
         "At each place a scenario has the strongest level that at least {:g} % of its runs reach (`share`). It comes "

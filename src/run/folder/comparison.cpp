@@ -258,10 +258,8 @@ std::string comparison_section(const Comparison& c) {
     if (c.extents)
         text += fmt::format(
             "Survey: `{}`. Simulated is every pixel of {:.6g} m deeper than {:.6g} m; the survey's area in each pixel "
-            "is "
-            "exact. The survey is the reference (true positive + false negative). Runout is the horizontal length "
-            "along "
-            "{} to the farthest point of each outline; reach is the straight distance from the path's start.\n\n",
+            "is exact. The survey is the reference (true positive + false negative). Runout is the horizontal length "
+            "along {} to the farthest point of each outline; reach is the straight distance from the path's start.\n\n",
             c.survey, c.cell, c.limit,
             c.path.empty()
                 ? std::string("no known path")

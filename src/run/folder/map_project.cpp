@@ -92,8 +92,11 @@ MapLayer shape_layer(const ShapeRule& rule, const ShapeLayer& layer, const MapPr
         Shapes shapes;
         double millimetres;
     };
-    constexpr Kind kinds[] = {
-        {"Polygon", Shapes::outlines, kOutline}, {"Line", Shapes::lines, kOutline}, {"Point", Shapes::points, 2.5}};
+    constexpr Kind kinds[] = {{"Polygon", Shapes::outlines, kOutline},
+                              {"Line", Shapes::lines, kOutline},
+                              {"Point", Shapes::points, 2.5},
+                              {"Polygon", Shapes::outlines, kOutline}};  // several of one row
+    static_assert(std::size(kinds) == std::variant_size_v<decltype(AttributedShape::shape)>, "one for each kind");
     const Kind& kind = kinds[layer.shapes.front().shape.index()];
     const std::string id = fmt::format("shapes_{}", rule.layer);
     return {id, rule.title, rule.shown,
