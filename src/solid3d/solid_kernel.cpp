@@ -449,10 +449,11 @@ private:
     /// Surfaces at rest do no work: no normal force gives a node more energy than it had. What mirror particles require
     /// beyond that is not the material's. In corners, and where few points shear, they show motion that is not there.
     /// The answer lies between v and what is left where no force makes anything leave a surface. That is no faster than
-    /// what came. In oblique corners only: elsewhere the same would take from what rebounds, and from what spreads
-    /// along a surface.
-    [[gnu::noinline]] static Vec3 without_gain(Touch* list, int count, const Vec3& came, const Vec3& v, double most2) {
-        if (!oblique(list, count)) return v;
+    /// what came. In oblique corners and where the ground bends only: elsewhere the same would take from what rebounds,
+    /// and from what spreads along a surface.
+    [[gnu::noinline]] static Vec3 without_gain(const SolidBody& body, const Vec3& x, Touch* list, int count,
+                                               const Vec3& came, const Vec3& v, double most2) {
+        if (!oblique(list, count) && !bent(body, x, list, count)) return v;
         Touch soft[kMostTouched];
         for (int n = 0; n < count; ++n) {
             soft[n] = list[n];
@@ -469,6 +470,19 @@ private:
         for (int n = 0; n < count; ++n)
             list[n].normal_change = soft[n].normal_change + s * (list[n].normal_change - soft[n].normal_change);
         return slow + s * more;
+    }
+
+    /// Whether the ground turns so far within the reach of a node's points that it is a corner.
+    static bool bent(const SolidBody& body, const Vec3& x, const Touch* list, int count) {
+        constexpr double kBend = 0.707;  // cosine of 45 degrees
+        const double reach = 1.5 * body.grid.cell();
+        for (const Touch* t = list; t < list + count; ++t) {
+            const Surface& surface = body.surfaces[static_cast<std::size_t>(t->surface)];
+            if (surface.kind != Surface::Kind::ground) continue;
+            for (const auto& [dx, dy] : {std::pair{reach, 0.0}, {-reach, 0.0}, {0.0, reach}, {0.0, -reach}})
+                if (contact(surface, x + Vec3(dx, dy, 0.0)).normal.dot(t->contact.normal) < kBend) return true;
+        }
+        return false;
     }
 
     struct Touches {
@@ -536,7 +550,7 @@ private:
         const Vec3 came = v;
         const double most2 = std::max(came.squaredNorm(), had2);
         separate(list, count, v);
-        if (v.squaredNorm() > most2) v = without_gain(list, count, came, v, most2);
+        if (v.squaredNorm() > most2) v = without_gain(body, x, list, count, came, v, most2);
         const Vec3 contact_work = v;
         for (Touch* t = list; t < list + count; ++t) {
             const Surface& surface = body.surfaces[static_cast<std::size_t>(t->surface)];
