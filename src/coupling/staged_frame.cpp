@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "coupling/staged_run.h"
+#include "mpm/flow_fields.h"
 #include "terrain/bed_points.h"
 
 namespace frana {
@@ -33,17 +34,13 @@ void StagedRun::particle_fields(Frame& frame) {
     frame.particles.clear();
     const Index before = columns.empty() ? 0 : columns.front().count, more = points_->status().points;
     const Index count = before + more;
-    const auto take = [&](const char* name) {
+    ParticleFields shared(store_, frame.particles, count);
+    for (const Field& field : frame.particles) {
         const auto found =
-            std::find_if(columns.begin(), columns.end(), [&](const Field& field) { return field.name == name; });
+            std::find_if(columns.begin(), columns.end(), [&](const Field& of) { return of.name == field.name; });
         expect(found != columns.end(), "columns have the quantities that points share");
-        double* const values = store_.zeros(frame.particles, found->name, found->unit, found->components, count);
-        std::copy_n(found->data, before * found->components, values);
-        return values + before * found->components;
-    };
-    double *position = take("position"), *velocity = take("velocity"), *speed = take("speed"), *depth = take("depth"),
-           *elevation = take("elevation"), *surface = take("surface"), *pressure = take("pressure"),
-           *mass = take("mass"), *volume = take("volume"), *id = take("id");
+        std::copy_n(found->data, before * found->components, const_cast<double*>(field.data));  // made just now
+    }
     double* const model = store_.zeros(frame.particles, "model", "1", 1, count) + before;
     double* const stress = store_.zeros(frame.particles, "stress", "Pa", 6, count) + 6 * before;
     const MaterialPoints& q = points_->body().points;
@@ -51,18 +48,11 @@ void StagedRun::particle_fields(Frame& frame) {
     for (Index p = 0; p < more; ++p) {
         const Vec3 x = points_->position(p), v = points_->velocity(p);
         const Sym3 s = points_->stress(p);
-        std::copy_n(x.data(), 3, position + 3 * p);
-        std::copy_n(v.data(), 3, velocity + 3 * p);
         s.write(stress + 6 * p);
-        speed[p] = v.norm();
-        const double ground = bed_elevation(scene_.bed, x[0], x[1]);
-        elevation[p] = std::isfinite(ground) ? ground : x[2];
-        depth[p] = map_.at({x[0], x[1]}).depth;
-        surface[p] = elevation[p] + depth[p];
-        pressure[p] = -s.trace() / 3.0;
-        mass[p] = q.mass[p];
-        volume[p] = q.j[p] * q.rest_volume[p];
-        id[p] = static_cast<double>(q.id[p]);
+        const double ground = bed_elevation(scene_.bed, x[0], x[1]), bed = std::isfinite(ground) ? ground : x[2];
+        const double steep = std::hypot(1.0, bed_steepness(scene_.bed, x[0], x[1]));
+        shared.set(before + p, {x[0], x[1], x[2], bed, map_.at({x[0], x[1]}).depth, steep, v[0], v[1], v[2], v.norm(),
+                                -s.trace() / 3.0, q.mass[p], q.j[p] * q.rest_volume[p], q.id[p]});
         model[p] = 1.0;
     }
 }

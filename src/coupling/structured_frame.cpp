@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "coupling/structured_run.h"
+#include "mpm/flow_fields.h"
 #include "mpm/stencil.h"
 #include "terrain/bed_points.h"
 
@@ -47,26 +48,13 @@ Frame StructuredRun::frame() {
         if (solids_)
             particle_fields(frame);
         else
-            no_particles(frame);
+            ParticleFields(store_, frame.particles, 0);
         node_fields(frame);
         if (solids_) inner_fields(frame);
         if (both_) water_fields(frame);
         if (both_ && solids_) own_water_fields(frame);
     });
     return frame;
-}
-
-/// Fields that all particles have, of none.
-void StructuredRun::no_particles(Frame& frame) {
-    struct Named {
-        const char *name, *unit;
-        int components;
-    };
-    for (const Named& of :
-         {Named{"position", "m", 3}, Named{"depth", "m", 1}, Named{"thickness", "m", 1}, Named{"velocity", "m/s", 3},
-          Named{"speed", "m/s", 1}, Named{"elevation", "m", 1}, Named{"surface", "m", 1}, Named{"pressure", "Pa", 1},
-          Named{"mass", "kg", 1}, Named{"volume", "m3", 1}, Named{"id", "1", 1}})
-        store_.zeros(frame.particles, of.name, of.unit, of.components, 0);
 }
 
 void StructuredRun::particle_fields(Frame& frame) {
@@ -76,12 +64,8 @@ void StructuredRun::particle_fields(Frame& frame) {
     const auto column = [&](const char* name, const char* unit, int components) {
         return store_.zeros(frame.particles, name, unit, components, count);
     };
-    double *position = column("position", "m", 3), *depth = column("depth", "m", 1),
-           *thickness = column("thickness", "m", 1), *velocity = column("velocity", "m/s", 3),
-           *speed = column("speed", "m/s", 1), *elevation = column("elevation", "m", 1),
-           *surface = column("surface", "m", 1), *pressure = column("pressure", "Pa", 1),
-           *mass = column("mass", "kg", 1), *volume = column("volume", "m3", 1), *id = column("id", "1", 1),
-           *stress = column("stress", "Pa", 3), *effective = column("effective_stress", "Pa", 3),
+    ParticleFields fields(store_, frame.particles, count);
+    double *stress = column("stress", "Pa", 3), *effective = column("effective_stress", "Pa", 3),
            *damage = column("damage", "1", 1), *cohesion = column("cohesion", "Pa", 1);
 #pragma omp parallel for schedule(static)
     for (Index p = 0; p < count; ++p) {
@@ -93,13 +77,10 @@ void StructuredRun::particle_fields(Frame& frame) {
         const double steep = std::sqrt(1.0 + bx * bx + by * by);
         const double holds = body.share * (1.0 - q.damage[p]);
         const double density = body.water ? q.mass[p] / q.volume[p] : body.density;
-        position[3 * p] = x.x(), position[3 * p + 1] = x.y(), position[3 * p + 2] = z + h;
-        depth[p] = h, thickness[p] = h / steep;
-        velocity[3 * p] = q.vx[p], velocity[3 * p + 1] = q.vy[p], velocity[3 * p + 2] = up;
-        speed[p] = std::sqrt(q.vx[p] * q.vx[p] + q.vy[p] * q.vy[p] + up * up);
-        elevation[p] = z, surface[p] = z + h;
-        pressure[p] = density * h * from_nodes(body, p, [&](Index k) { return StructuredMap::pressing(body, k); });
-        mass[p] = q.mass[p], volume[p] = q.volume[p], id[p] = static_cast<double>(q.id[p]);
+        const double vx = q.vx[p], vy = q.vy[p], speed = std::sqrt(vx * vx + vy * vy + up * up);
+        const double pressure =
+            density * h * from_nodes(body, p, [&](Index k) { return StructuredMap::pressing(body, k); });
+        fields.set(p, {x.x(), x.y(), z + h, z, h, steep, vx, vy, up, speed, pressure, q.mass[p], q.volume[p], q.id[p]});
         stress[3 * p] = holds * q.xx[p], stress[3 * p + 1] = holds * q.yy[p], stress[3 * p + 2] = holds * q.xy[p];
         const Sym2 k =
             earth_pressure({q.cxx[p], q.cyy[p], 0.5 * (q.cxy[p] + q.cyx[p])}, h, q.normal_gravity[p], body.rankine);
@@ -114,24 +95,13 @@ void StructuredRun::particle_fields(Frame& frame) {
 void StructuredRun::node_fields(Frame& frame) {
     const StructuredBody& body = flow().body();
     const GridGeometry& g = bed_.geometry;
-    const auto column = [&](const char* name, const char* unit, int components) {
-        return store_.zeros(frame.nodes, name, unit, components, g.size());
-    };
-    double *elevation = column("elevation", "m", 1), *depth = column("depth", "m", 1),
-           *thickness = column("thickness", "m", 1), *surface = column("surface", "m", 1),
-           *velocity = column("velocity", "m/s", 3), *speed = column("speed", "m/s", 1),
-           *pressure = column("pressure", "Pa", 1), *peak_depth = column("peak_depth", "m", 1),
-           *peak_speed = column("peak_speed", "m/s", 1), *peak_pressure = column("peak_pressure", "Pa", 1),
-           *peak_dynamic = column("peak_dynamic_pressure", "Pa", 1), *arrival = column("arrival_time", "s", 1);
+    NodeFields fields(store_, frame.nodes, g.size());
 #pragma omp parallel for schedule(static)
     for (Index j = 0; j < g.ny; ++j)
         for (Index i = 0; i < g.nx; ++i) {
             const Index n = j * g.nx + i;
-            elevation[n] = surface[n] = bed_.at(i, j);
             const NodePeak& peak = map_.peak(body.grid.at(i, j));
-            peak_depth[n] = peak.depth, peak_speed[n] = peak.speed, peak_pressure[n] = peak.pressure;
-            peak_dynamic[n] = peak.dynamic_pressure;
-            arrival[n] = peak.arrival_time(map_.footprint_depth());
+            fields.stand(n, bed_.at(i, j), peak, peak.arrival_time(map_.footprint_depth()));
         }
     for_each_node(body.grid, body.active.work, [&](Index k, Index n) {
         const StructuredBody::Moved& node = body.moved[k];
@@ -139,12 +109,10 @@ void StructuredRun::node_fields(Frame& frame) {
         const double h = StructuredMap::depth_of(body, k), up = map_.climb(k, node.vx, node.vy);
         if (!(h > 0.0)) return;
         // Peaks were noted before the last drift: what stands there now is one too.
-        peak_depth[n] = std::max(peak_depth[n], h);
-        depth[n] = h, surface[n] += h;
-        thickness[n] = h / std::sqrt(1.0 + ground.slope_x * ground.slope_x + ground.slope_y * ground.slope_y);
-        velocity[3 * n] = node.vx, velocity[3 * n + 1] = node.vy, velocity[3 * n + 2] = up;
-        speed[n] = std::sqrt(node.vx * node.vx + node.vy * node.vy + up * up);
-        pressure[n] = StructuredMap::density_of(body, k) * StructuredMap::pressing(body, k) * h;
+        fields.peak_depth[n] = std::max(fields.peak_depth[n], h);
+        fields.flow(n, {h, std::sqrt(1.0 + ground.slope_x * ground.slope_x + ground.slope_y * ground.slope_y), node.vx,
+                        node.vy, up, std::sqrt(node.vx * node.vx + node.vy * node.vy + up * up),
+                        StructuredMap::density_of(body, k) * StructuredMap::pressing(body, k) * h});
     });
 }
 

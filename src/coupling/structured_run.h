@@ -58,7 +58,6 @@ private:
     void accumulate();
     void accumulate_water();
     double time() const { return both_ ? both_->time() : alone_->status().time; }
-    void no_particles(Frame& frame);
     void particle_fields(Frame& frame);
     void node_fields(Frame& frame);
     void inner_fields(Frame& frame);

@@ -3,6 +3,7 @@
 
 #include "base/simd.h"
 #include "law/rheology/laws.h"
+#include "mpm/flow_fields.h"
 #include "mpm/stencil.h"
 #include "shallow/depth_averaged.h"
 #include "shallow/sheet.h"
@@ -148,70 +149,30 @@ void DepthAveraged::particle_fields(Frame& frame) {
     const Columns& c = flow_.columns;
     const Index count = c.count();
     const GridGeometry& g = flow_.grid.geometry();
-    const auto column = [&](const char* name, const char* unit, int components) {
-        return store_.raw(frame.particles, name, unit, components, count);
-    };
-    double* position = column("position", "m", 3);
-    double* depth = column("depth", "m", 1);
-    double* thickness = column("thickness", "m", 1);
-    double* velocity = column("velocity", "m/s", 3);
-    double* speed = column("speed", "m/s", 1);
-    double* elevation = column("elevation", "m", 1);
-    double* surface = column("surface", "m", 1);
-    double* pressure = column("pressure", "Pa", 1);
-    double* mass = column("mass", "kg", 1);
-    double* volume = column("volume", "m3", 1);
-    double* id = column("id", "1", 1);
+    ParticleFields fields(store_, frame.particles, count);
 #pragma omp parallel for schedule(static)
     for (Index p = 0; p < count; ++p) {
         const BedHere bed = bed_at(flow_, steep_, curved_, c.x[p], c.y[p]);
         const double h = std::max(probe_.depth[p], 0.0), vx = probe_.vx[p], vy = probe_.vy[p];
         const double slope2 = steep_ ? bed.slope_x * bed.slope_x + bed.slope_y * bed.slope_y : 0.0;
         const double vz = vx * bed.path_x + vy * bed.path_y, path2 = bed.path_x * bed.path_x + bed.path_y * bed.path_y;
-        position[3 * p] = g.x0 + c.x[p] * g.cell;
-        position[3 * p + 1] = g.y0 + c.y[p] * g.cell;
-        position[3 * p + 2] = bed.z + h;
-        depth[p] = h;
-        thickness[p] = h / std::sqrt(1.0 + slope2);
-        velocity[3 * p] = vx;
-        velocity[3 * p + 1] = vy;
-        velocity[3 * p + 2] = vz;
-        speed[p] = std::sqrt(vx * vx + vy * vy + vz * vz);
-        elevation[p] = bed.z;
-        surface[p] = bed.z + h;
-        pressure[p] = flow_.density * bed.gravity(flow_.gravity, vx, vy) * h / (1.0 + path2);
-        mass[p] = c.mass[p];
-        volume[p] = c.mass[p] / flow_.density;
-        id[p] = static_cast<double>(c.id[p]);
+        fields.set(p, {g.x0 + c.x[p] * g.cell, g.y0 + c.y[p] * g.cell, bed.z + h, bed.z, h, std::sqrt(1.0 + slope2), vx,
+                       vy, vz, std::sqrt(vx * vx + vy * vy + vz * vz),
+                       flow_.density * bed.gravity(flow_.gravity, vx, vy) * h / (1.0 + path2), c.mass[p],
+                       c.mass[p] / flow_.density, c.id[p]});
     }
 }
 
 /// Returns the largest speed that counts.
 double DepthAveraged::node_fields(Frame& frame) {
     const Index count = shown_.nx * shown_.ny;
-    const auto column = [&](const char* name, const char* unit, int components) {
-        return store_.zeros(frame.nodes, name, unit, components, count);
-    };
-    const auto everywhere = [&](const char* name, const char* unit) {  // filled below, on all nodes
-        return store_.raw(frame.nodes, name, unit, 1, count);
-    };
-    double* elevation = everywhere("elevation", "m");
-    double* depth = column("depth", "m", 1);
-    double* thickness = column("thickness", "m", 1);
-    double* surface = everywhere("surface", "m");
-    double* velocity = column("velocity", "m/s", 3);
-    double* speed = column("speed", "m/s", 1);
-    double* pressure = column("pressure", "Pa", 1);
-    double* peak_depth = everywhere("peak_depth", "m");
-    double* peak_speed = everywhere("peak_speed", "m/s");
-    double* peak_pressure = everywhere("peak_pressure", "Pa");
-    double* peak_dynamic = everywhere("peak_dynamic_pressure", "Pa");
-    double* arrival = everywhere("arrival_time", "s");
+    NodeFields fields(store_, frame.nodes, count);
     double *change = nullptr, *eroded = nullptr, *deposited = nullptr;
     if (erosion_) {
-        change = everywhere("bed_change", "m");
-        eroded = everywhere("eroded_depth", "m");
-        deposited = everywhere("deposited_depth", "m");
+        const auto everywhere = [&](const char* name) { return store_.raw(frame.nodes, name, "m", 1, count); };
+        change = everywhere("bed_change");
+        eroded = everywhere("eroded_depth");
+        deposited = everywhere("deposited_depth");
     }
     for_all_output_nodes(flow_, shown_, [&](Index k, Index n) {
         if (erosion_) {
@@ -219,13 +180,10 @@ double DepthAveraged::node_fields(Frame& frame) {
             eroded[n] = erosion_->eroded_depth(k);
             deposited[n] = erosion_->deposited_depth(k);
         }
-        elevation[n] = has_no_data(flow_.bed.exit[k]) ? std::numeric_limits<double>::quiet_NaN() : flow_.bed.z[k];
-        surface[n] = elevation[n];
-        peak_depth[n] = peaks_.depth[k];
-        peak_speed[n] = peaks_.speed[k];
-        peak_pressure[n] = peaks_.pressure[k];
-        peak_dynamic[n] = peaks_.dynamic_pressure[k];
-        arrival[n] = peaks_.arrival_time(k, footprint_depth_);
+        const double ground =
+            has_no_data(flow_.bed.exit[k]) ? std::numeric_limits<double>::quiet_NaN() : flow_.bed.z[k];
+        const NodePeak peak{peaks_.depth[k], peaks_.speed[k], peaks_.pressure[k], peaks_.dynamic_pressure[k]};
+        fields.stand(n, ground, peak, peaks_.arrival_time(k, footprint_depth_));
     });
     const Motion* motions = flow_.nodes.motions();
     double fastest = 0.0;
@@ -234,15 +192,10 @@ double DepthAveraged::node_fields(Frame& frame) {
         if (h <= 0.0) return;
         const double bx = steep_ ? flow_.bed.slope_x[k] : 0.0, by = steep_ ? flow_.bed.slope_y[k] : 0.0;
         const BedContact contact = bed_contact(flow_, steep_, curved_, k, vx, vy);
-        depth[n] = h;
-        thickness[n] = h / std::sqrt(1.0 + bx * bx + by * by);
-        surface[n] += h;
-        velocity[3 * n] = vx;
-        velocity[3 * n + 1] = vy;
-        if (steep_) velocity[3 * n + 2] = vx * flow_.bed.smooth[k].x + vy * flow_.bed.smooth[k].y;
-        speed[n] = contact.speed;
+        const double vz = steep_ ? vx * flow_.bed.smooth[k].x + vy * flow_.bed.smooth[k].y : 0.0;
+        fields.flow(n, {h, std::sqrt(1.0 + bx * bx + by * by), vx, vy, vz, contact.speed,
+                        contact.pressure * (h / flow_.nodes.depth[k])});
         fastest = std::max(fastest, speed_that_counts(h, footprint_depth_, contact.speed));
-        pressure[n] = contact.pressure * (h / flow_.nodes.depth[k]);
     });
     return fastest;
 }
