@@ -83,6 +83,24 @@ std::shared_ptr<const Friction> striped(const bed::Voellmy& law, const Raster& b
     return std::make_shared<const Friction>(std::move(friction));
 }
 
+/// In rows from the south-west corner, a house's breadth apart.
+std::vector<Barrier> village(Index houses, const GridGeometry& g) {
+    constexpr double kBreadth = 2.0 * kCell;
+    const Index row = static_cast<Index>(static_cast<double>(g.nx - 8) * kCell / (2.0 * kBreadth));
+    std::vector<Barrier> all;
+    for (Index n = 0; n < houses; ++n) {
+        const double x = g.x0 + 4.0 * kCell + 2.0 * kBreadth * static_cast<double>(n % row),
+                     y = g.y0 + 4.0 * kCell + 2.0 * kBreadth * static_cast<double>(n / row);
+        Barrier house;
+        house.name = "house_" + std::to_string(n + 1);
+        house.outline.parts = {
+            Polygon{{{{x, y}, {x + kBreadth, y}, {x + kBreadth, y + kBreadth}, {x, y + kBreadth}, {x, y}}}}};
+        house.height = 8.0;
+        all.push_back(house);
+    }
+    return all;
+}
+
 }  // namespace
 
 Scene blob_scene(const Blob& blob) {
@@ -98,6 +116,7 @@ Scene blob_scene(const Blob& blob) {
     const bed::Voellmy voellmy{0.2, 500.0};
     if (blob.friction) scene.bed_law = voellmy;
     if (blob.zones) scene.friction = striped(voellmy, scene.bed);
+    if (blob.houses > 0) scene.barriers = village(blob.houses, scene.bed.geometry);
     if (blob.erodes) scene.erodible = loose_ground(scene.bed);
     if (blob.rheology) scene.rheology = rheology::Bingham{2000.0, 50.0};
     scene.scheme.sleep = blob.sleeps;

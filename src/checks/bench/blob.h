@@ -14,6 +14,7 @@ struct Blob {
     bool sleeps = true;        ///< scheme.sleep
     bool single = false;       ///< scheme.precision = "float"
     bool erodes = false;       ///< 1 m of loose ground, of which the growth law takes a little
+    Index houses = 0;          ///< of 10 m x 10 m, in rows along the grid's edge, where no flow is
     bool zones = false;        ///< two bed laws in stripes of ten cells, of nearly the same friction
 };
 

@@ -46,6 +46,8 @@ std::vector<Gate> gates(const Report& report) {
         {"erodible bed over rock", 1.25, 1.1, false, ratio(one("depth_averaged_erodible"), one("depth_averaged_rock"))},
         {"friction by zones over one law", 1.03, 1.0, false,
          ratio(one("depth_averaged_zones"), one("depth_averaged_rock"))},
+        {"500 houses beyond the flow over none", 1.05, 1.0, false,
+         ratio(one("depth_averaged_houses"), one("depth_averaged_no_houses"))},
         {"memory per particle, double [B]", 200, 120, false, bytes(full)},
         {"float, one thread: ns x triad GB/s [B]", 450, 280, false, ns(narrow) * triad},
         {"memory per particle, float [B]", 110, 60, false, bytes(narrow)},

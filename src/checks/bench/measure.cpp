@@ -7,6 +7,7 @@
 #include "checks/bench/team_clock.h"
 #include "checks/bench/traffic.h"
 #include "coupling/structured_run.h"
+#include "coupling/walled_columns.h"
 #include "shallow/depth_averaged.h"
 
 namespace frana::bench {
@@ -25,28 +26,40 @@ Phases between(const Phases& before, const Phases& after) {
     return spent;
 }
 
-/// The plane's solver, for the measurement.
+/// The plane's solver, for the measurement, alone or among houses.
 class Plane {
 public:
-    explicit Plane(const Scene& scene) : simulation_(scene) { simulation_.count_cpu_time(); }
+    explicit Plane(const Scene& scene) {
+        if (scene.barriers.empty())
+            alone_ = std::make_unique<DepthAveraged>(scene);
+        else
+            among_houses_ = std::make_unique<WalledColumns>(scene);
+        columns().count_cpu_time();
+    }
 
-    void advance() { simulation_.advance(std::numeric_limits<double>::max()); }
-    Index particles() const { return simulation_.status().particles; }
-    Index steps() const { return simulation_.status().step; }
-    Phases timings() const { return simulation_.timings(); }
-    Traffic traffic(const std::string& phase) const { return traffic_of(phase, simulation_.flow()); }
-    Index bytes() const { return simulation_.particle_bytes(); }
-    std::uint64_t hash() const { return hash_of(simulation_.flow().columns); }
+    void advance() { whole().advance(std::numeric_limits<double>::max()); }
+    Index particles() const { return columns().status().particles; }
+    Index steps() const { return columns().status().step; }
+    Phases timings() const { return whole().timings(); }
+    Traffic traffic(const std::string& phase) const { return traffic_of(phase, columns().flow()); }
+    Index bytes() const { return columns().particle_bytes(); }
+    std::uint64_t hash() const { return hash_of(columns().flow().columns); }
     /// Nodes that points reach: those that the passes visit while nothing sleeps.
     double nodes() const {
-        const Flow& flow = simulation_.flow();
+        const Flow& flow = columns().flow();
         Index groups = 0;
         for (const Index tile : flow.active.work) groups += __builtin_popcountll(flow.in_reach[tile]);
         return 4.0 * static_cast<double>(groups);
     }
 
 private:
-    DepthAveraged simulation_;
+    DepthAveraged& columns() const { return alone_ ? *alone_ : among_houses_->columns(); }
+    Simulation& whole() const {
+        if (alone_) return *alone_;
+        return *among_houses_;
+    }
+    std::unique_ptr<DepthAveraged> alone_;
+    std::unique_ptr<WalledColumns> among_houses_;
 };
 
 /// The 3D solver.

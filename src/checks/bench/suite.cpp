@@ -61,6 +61,20 @@ Group with_ground(Index particles) {
     return group;
 }
 
+/// A village beyond the flow, on a grid that has room for it.
+Group with_houses(Index particles) {
+    Blob none;
+    none.particles = particles;
+    none.emptiness = 4.0;
+    Blob village = none;
+    village.houses = 500;
+    Group group;
+    group.rounds = 2;
+    group.add("depth_averaged_no_houses", none);
+    group.add("depth_averaged_houses", village);
+    return group;
+}
+
 Group asleep_and_awake(Index particles) {
     Blob asleep;
     asleep.particles = particles;
@@ -192,6 +206,7 @@ Report run(const Options& wanted, const std::function<void(const std::string&)>&
     const Index reference = reference_particles(options);
     time_in_turns(report, with_and_without(reference), say);
     time_in_turns(report, with_ground(reference), say);
+    time_in_turns(report, with_houses(reference), say);
     time_in_turns(report, asleep_and_awake(reference), say);
     if (!options.quick || reference < kReference)
         time_in_turns(report, tight_and_wide(reference >= kReference ? kWideParticles : reference), say);
