@@ -99,7 +99,10 @@ void StagedRun::step_points(double until) {
     note_departed();
     if (alone || points_->status().time == columns_->status().time) {
         convert_to_3d();
-        if (!returning_.empty()) timed_("3D to 2D", [&] { convert_to_2d(); });
+        if (!returning_.empty())
+            timed_("3D to 2D", [&] {
+                convert_to_2d([&](const DepartedPoint& point, const Vec2& to) { return place_of_column(point, to); });
+            });
     }
     for (const Mpm3d::Birth& birth : points_->take_births())
         if (watch_) watch_->inherit(birth.child, birth.parent);
