@@ -112,3 +112,24 @@ TEST_CASE("What is moved to a cell spreads on level ground, not up, and loses no
     CHECK(momentum == Approx(64e3).epsilon(1e-13));
     CHECK(most == Approx(slope > 0.0 ? 2000.0 : 1040.0).epsilon(1e-3));
 }
+
+TEST_CASE("Sums of a 3D stage from the start begin with its points, and later the conversion has its entry",
+          "[stages][barrier]") {
+    Scene scene = lake_at_wall(0.0, 0.1);
+    const StagedRun at_once(scene);
+    const Status& first = at_once.status();
+    const double round_off = 1e-13 * first.potential;
+    CHECK(std::abs(first.dissipated) < round_off);  // the ramp would have lifted columns: 277 kJ
+    CHECK(std::abs(first.in_3d.numerical) < round_off);
+    CHECK(first.energy_left == 0.0);
+    CHECK(first.potential == Approx(first.mass * scene.gravity * (kLakeBed + 0.5 * kLakeDepth)).epsilon(1e-12));
+    scene.solid->from = 0.05;
+    StagedRun later(scene);
+    const Status start = later.status();
+    run_to(later, 0.05);
+    REQUIRE(later.points());
+    const Status& now = later.status();
+    CHECK(start.potential - first.potential > 2e5);
+    CHECK(now.in_3d.numerical ==
+          Approx(start.potential - first.potential).epsilon(0.1));  // 0.05 s of flow off the ramp
+}

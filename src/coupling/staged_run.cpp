@@ -132,7 +132,8 @@ void StagedRun::begin_3d(const std::function<FlowColumns(const Marks&)>& columns
     const Status& now = columns_->status();  // what they gave counts as left
     converted_.mass = now.mass_left - before.mass_left;
     converted_.energy = now.energy_left - before.energy_left;
-    converted_.lost = converted_.energy - points_->status().energy_given;
+    // Points from the start on are what sums begin with: the release never stood on the ramp of a barrier as columns.
+    converted_.lost = scene_.solid->from > 0.0 ? converted_.energy - points_->status().energy_given : 0.0;
     for (std::size_t axis = 0; axis < 2; ++axis)
         converted_.momentum[axis] = now.momentum_left[axis] - before.momentum_left[axis];
     sample(points_->status().time);
