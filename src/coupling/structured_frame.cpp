@@ -123,28 +123,34 @@ void StructuredRun::node_fields(Frame& frame) {
            *pressure = column("pressure", "Pa", 1), *peak_depth = column("peak_depth", "m", 1),
            *peak_speed = column("peak_speed", "m/s", 1), *peak_pressure = column("peak_pressure", "Pa", 1),
            *peak_dynamic = column("peak_dynamic_pressure", "Pa", 1), *arrival = column("arrival_time", "s", 1);
+    const double footprint = map_.footprint_depth();
+    const auto show_peak = [&](const NodePeak& peak, Index n) {
+        peak_depth[n] = peak.depth, peak_speed[n] = peak.speed, peak_pressure[n] = peak.pressure;
+        peak_dynamic[n] = peak.dynamic_pressure, arrival[n] = peak.arrival_time(footprint);
+    };
 #pragma omp parallel for schedule(static)
     for (Index j = 0; j < g.ny; ++j)
         for (Index i = 0; i < g.nx; ++i) {
             const Index n = j * g.nx + i;
             elevation[n] = surface[n] = bed_.at(i, j);
-            const NodePeak& peak = map_.peak(body.grid.at(i, j));
-            peak_depth[n] = peak.depth, peak_speed[n] = peak.speed, peak_pressure[n] = peak.pressure;
-            peak_dynamic[n] = peak.dynamic_pressure;
-            arrival[n] = peak.arrival_time(map_.footprint_depth());
+            show_peak(map_.peak(body.grid.at(i, j)), n);
         }
     for_each_node(body.grid, body.active.work, [&](Index k, Index n) {
         const StructuredBody::Moved& node = body.moved[k];
         const StructuredBody::NodeGround& ground = body.ground[k];
         const double h = StructuredMap::depth_of(body, k), up = map_.climb(k, node.vx, node.vy);
         if (!(h > 0.0)) return;
-        // Peaks were noted before the last drift: what stands there now is one too.
-        peak_depth[n] = std::max(peak_depth[n], h);
         depth[n] = h, surface[n] += h;
         thickness[n] = h / std::sqrt(1.0 + ground.slope_x * ground.slope_x + ground.slope_y * ground.slope_y);
         velocity[3 * n] = node.vx, velocity[3 * n + 1] = node.vy, velocity[3 * n + 2] = up;
         speed[n] = std::sqrt(node.vx * node.vx + node.vy * node.vy + up * up);
-        pressure[n] = StructuredMap::density_of(body, k) * StructuredMap::pressing(body, k) * h;
+        const double density = StructuredMap::density_of(body, k);
+        pressure[n] = density * StructuredMap::pressing(body, k) * h;
+        // Peaks were noted before the last drift, and the next step notes what stands there now. No frame is ahead of its
+        // own, and none changes the run.
+        NodePeak peak = map_.peak(k);
+        peak.note({h, speed[n], pressure[n], density}, status_.time, footprint);
+        show_peak(peak, n);
     });
 }
 
