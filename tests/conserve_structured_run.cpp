@@ -455,6 +455,34 @@ TEST_CASE("No depth of a structured run is more than its peak", "[structured]") 
     }
 }
 
+// Depths are noted a step later, if not with the step itself.
+TEST_CASE("No frame of a structured run is above its peaks, and no later peak below it", "[structured]") {
+    for (const double cohesion : {1e9, 600.0}) {
+        const Scene scene = sliding(cohesion);
+        const std::unique_ptr<Simulation> run = make_simulation(scene);
+        std::vector<double> highest;
+        for (const double time : {0.0, 0.05, 0.3, 0.5, 0.9, 1.5}) {
+            go_to(*run, time);
+            const Frame frame = run->frame();
+            const auto values = [&](const char* name) { return frame.node(name)->data; };
+            const double *depth = values("depth"), *peak = values("peak_depth"), *arrival = values("arrival_time");
+            highest.resize(static_cast<std::size_t>(frame.grid.size()));
+            for (Index k = 0; k < frame.grid.size(); ++k) {
+                CAPTURE(cohesion, time, k);
+                CHECK(depth[k] <= peak[k]);
+                CHECK(values("pressure")[k] <= values("peak_pressure")[k]);
+                if (depth[k] > scene.output.footprint_depth) {
+                    CHECK(values("speed")[k] <= values("peak_speed")[k]);
+                    CHECK((arrival[k] >= 0.0 && arrival[k] <= frame.status.time));
+                }
+                double& before = highest[static_cast<std::size_t>(k)];
+                CHECK(peak[k] >= before);
+                before = peak[k];
+            }
+        }
+    }
+}
+
 TEST_CASE("A barrier's box stops a structured block, which leaves it the momentum", "[structured]") {
     Scene scene = sliding();
     Barrier wall;

@@ -4,7 +4,9 @@
 #include <limits>
 #include <utility>
 
+#include "coupling/displaced.h"
 #include "coupling/staged_run.h"
+#include "terrain/bed_points.h"
 #include "terrain/part_of.h"
 
 namespace frana {
@@ -38,14 +40,18 @@ void StagedRun::note_departed() {
     }
 }
 
+/// Where a point has come to, or where it left if columns may not stand there.
+Vec2 StagedRun::where_allowed(const DepartedPoint& point, const Vec2& to) const {
+    return columns_->may_stand(to.x(), to.y()) ? to : Vec2(point.position.head<2>());
+}
+
 /// Where a column of a point that has come to `to` stands. It is there, or where it left. A barrier may raise the
 /// ground of columns that the point is not above. Or a hole may have a wall. Then it is before them on its own side.
 /// Where the window ends near a barrier and columns have no cell there, it is one of the window. They leave that again
 /// in their next step: on the barrier they would gain its height. Not so before a hole. Points do not feel its wall,
 /// and would run down the same cells again and again.
 Vec2 StagedRun::place_of_column(const DepartedPoint& point, const Vec2& to) {
-    const Vec2 left = point.position.head<2>();
-    Vec2 x = columns_->may_stand(to.x(), to.y()) ? to : left;
+    const Vec2 x = where_allowed(point, to);
     const Flow& flow = columns_->flow();
     const bool at_hole = in_hole_wall(flow, x);
     if (!at_hole && (!on_raised(x) || above_barrier(x))) return x;
@@ -71,46 +77,52 @@ bool StagedRun::on_raised(const Vec2& x) const {
 }
 
 /// Whether a point's column may stand at x: on the terrain, in an allowed cell that no barrier raises or hides from it.
-bool StagedRun::may_stand(const DepartedPoint& point, const Vec2& x,
-                          const std::function<bool(Index, Index)>& allowed) const {
+bool StagedRun::may_stand(const DepartedPoint& point, const Vec2& x, const Allowed& allowed) const {
     const GridGeometry& g = scene_.bed.geometry;
     const auto [i, j] = cell_at(g, x);
     const bool inside = x.x() >= g.x0 && x.y() >= g.y0 && x.x() <= g.x_max() && x.y() <= g.y_max();
     return inside && !is_raised(i, j) && allowed(i, j) && !behind_barrier(point.position, x);
 }
 
-/// Behind the edge of the nearest cell to x of those that no barrier raises or hides. The place is kSpread times as far
-/// behind it as x lies before it. So what stood in one or two cells at a barrier is not heaped on the next ones.
-std::optional<Vec2> StagedRun::nearest_before(const DepartedPoint& point, const Vec2& x,
-                                              const std::function<bool(Index, Index)>& allowed) const {
-    constexpr Index kFar = 3;          // cells
-    constexpr double kSpread = 4.0;    // chosen: a lake rises by a quarter there, and not by the whole
+/// In the cell of a node, as near to x as can be.
+Vec2 StagedRun::in_cell(Index i, Index j, const Vec2& x) const {
     constexpr double kWithin = 0.499;  // of a cell: what belongs to its node for certain
     const GridGeometry& g = scene_.bed.geometry;
+    const auto near = [&](double u, double node, double low, double high) {
+        return std::clamp(u, std::max(low, node - kWithin * g.cell), std::min(high, node + kWithin * g.cell));
+    };
+    return {near(x.x(), g.x(i), g.x0, g.x_max()), near(x.y(), g.y(j), g.y0, g.y_max())};
+}
+
+/// The nearest place to x in the allowed cells that no barrier raises or hides.
+std::optional<Vec2> StagedRun::edge_before(const DepartedPoint& point, const Vec2& x, const Allowed& allowed) const {
+    constexpr Index kFar = 3;  // cells
+    const GridGeometry& g = scene_.bed.geometry;
     const auto [i0, j0] = cell_at(g, x);
-    std::optional<Vec2> best, edge;
+    std::optional<Vec2> edge;
     double least = std::numeric_limits<double>::max();
     for (Index j = std::max<Index>(0, j0 - kFar); j <= std::min(g.ny - 1, j0 + kFar); ++j)
         for (Index i = std::max<Index>(0, i0 - kFar); i <= std::min(g.nx - 1, i0 + kFar); ++i) {
             if (is_raised(i, j) || !allowed(i, j)) continue;
-            const auto in_cell = [&](const Vec2& at) {
-                const auto near = [&](double u, double node, double low, double high) {
-                    return std::clamp(u, std::max(low, node - kWithin * g.cell),
-                                      std::min(high, node + kWithin * g.cell));
-                };
-                return Vec2(near(at.x(), g.x(i), g.x0, g.x_max()), near(at.y(), g.y(j), g.y0, g.y_max()));
-            };
-            const Vec2 place = in_cell(x);
+            const Vec2 place = in_cell(i, j, x);
             if ((place - x).norm() >= least || behind_barrier(point.position, place)) continue;
-            least = (place - x).norm();
-            best = in_cell(2.0 * place - x), edge = place;
+            least = (place - x).norm(), edge = place;
         }
-    if (!best) return best;
+    return edge;
+}
+
+/// Behind the edge of the nearest cell to x of those that no barrier raises or hides. The place is kSpread times as far
+/// behind it as x lies before it. So what leaves the window there is not heaped on the next cells.
+std::optional<Vec2> StagedRun::nearest_before(const DepartedPoint& point, const Vec2& x, const Allowed& allowed) const {
+    constexpr double kSpread = 4.0;  // chosen
+    const std::optional<Vec2> edge = edge_before(point, x, allowed);
+    if (!edge) return edge;
     for (double spread = kSpread; spread > 1.0; spread -= 1.0) {
         const Vec2 place = *edge + spread * (*edge - x);
         if (may_stand(point, place, allowed)) return place;
     }
-    return best;
+    const auto [i, j] = cell_at(scene_.bed.geometry, *edge);
+    return in_cell(i, j, 2.0 * *edge - x);
 }
 
 /// Their ground is filtered: nodes adjacent to those that a barrier raises are raised too.
@@ -141,15 +153,69 @@ bool StagedRun::behind_barrier(const Vec3& from, const Vec2& place) const {
                        [&](const Surface& s) { return s.is_barrier() && enters(s, from, to, entry); });
 }
 
+/// How much of a point its column has room for where it stands on the ramp of a barrier [1]: what is above it.
+double StagedRun::share_above_ramp(const DepartedPoint& point, const Vec2& x) const {
+    const double size = std::cbrt(point.mass / scene_.density), ground = columns_->at(x).elevation;
+    return std::clamp(0.5 + (point.position.z() - ground) / size, 0.0, 1.0);
+}
+
+/// At the end of the stage all points stand where they are. Of those on the ramp of a barrier the part below it is
+/// moved to the nearest cell before it, and spreads from there.
+void StagedRun::clear_ramps() {
+    const GridGeometry& g = scene_.bed.geometry;
+    const Flow& flow = columns_->flow();
+    Displaced displaced(g);
+    const double time = points_->status().time;
+    const auto now = [&](const DepartedPoint& point) {
+        return where_allowed(point, point.position.head<2>() + (time - point.time) * point.velocity.head<2>());
+    };
+    const auto node_at = [&](const Vec2& x) {
+        const auto [i, j] = cell_at(g, x);
+        return std::clamp<Index>(j, 0, g.ny - 1) * g.nx + std::clamp<Index>(i, 0, g.nx - 1);
+    };
+    const auto on_ramp = [&](const Vec2& x) { return on_raised(x) && !above_barrier(x) && !in_hole_wall(flow, x); };
+    std::vector<DepartedPoint> before, ramp;
+    for (const DepartedPoint& point : returning_) {
+        const Vec2 x = now(point);
+        if (on_ramp(x)) {
+            ramp.push_back(point);
+            continue;
+        }
+        before.push_back(point);
+        const double ground = bed_below(scene_.bed, x.x(), x.y());
+        if (!on_raised(x)) displaced.stay(point, node_at(x), std::isfinite(ground) ? ground : point.position.z());
+    }
+    std::vector<DepartedPoint> stay;
+    for (DepartedPoint& point : ramp) {
+        const Vec2 x = now(point);
+        const double above = share_above_ramp(point, x);
+        if (above < 1.0) {
+            const std::optional<Vec2> edge =
+                edge_before(point, x, [&](Index i, Index j) { return displaced.holds(j * g.nx + i); });
+            if (edge) {
+                displaced.move(point, 1.0 - above, node_at(*edge));
+                point.mass *= above, point.energy *= above;
+            } else
+                returned_.raised += (1.0 - above) * point.mass;
+        }
+        if (point.mass > 0.0) stay.push_back(point);
+    }
+    displaced.spread();
+    returning_.clear();
+    for (const DepartedPoint& point : before) {
+        const Vec2 x = now(point);
+        returning_.push_back(on_raised(x) ? point : displaced.joined(point, node_at(x)));
+    }
+    returning_.insert(returning_.end(), stay.begin(), stay.end());
+}
+
 /// They become columns. What these have no place for, motion up and down and against each other, is lost.
-void StagedRun::convert_to_2d() {
+void StagedRun::convert_to_2d(const PlaceOf& place) {
     const double time = points_->status().time;
     note_largest();
     for (const DepartedPoint& point : returning_) returned_.mass += point.mass, returned_.lost += point.energy;
     const MovingColumns columns =
-        columns_of(returning_, scene_,
-                   {time, [&](const DepartedPoint& point, const Vec2& to) { return place_of_column(point, to); },
-                    [&](const Vec2& x) { return columns_->at(x).depth; }});
+        columns_of(returning_, scene_, {time, place, [&](const Vec2& x) { return columns_->at(x).depth; }});
     returned_.lost -= columns_->take_in(columns.seeds, columns.gradient, time);
     returning_.clear();
 }
@@ -167,7 +233,11 @@ void StagedRun::end_3d() {
             returning_ = std::move(all);
         else
             returning_.insert(returning_.end(), all.begin(), all.end());
-        convert_to_2d();
+        if (!raised_.empty()) clear_ramps();
+        convert_to_2d([&](const DepartedPoint& point, const Vec2& to) {
+            const Vec2 x = where_allowed(point, to);
+            return in_hole_wall(columns_->flow(), x) ? place_of_column(point, to) : x;
+        });
         returning_.shrink_to_fit();
         ended_ = true;
     });

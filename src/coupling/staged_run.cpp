@@ -99,7 +99,10 @@ void StagedRun::step_points(double until) {
     note_departed();
     if (alone || points_->status().time == columns_->status().time) {
         convert_to_3d();
-        if (!returning_.empty()) timed_("3D to 2D", [&] { convert_to_2d(); });
+        if (!returning_.empty())
+            timed_("3D to 2D", [&] {
+                convert_to_2d([&](const DepartedPoint& point, const Vec2& to) { return place_of_column(point, to); });
+            });
     }
     for (const Mpm3d::Birth& birth : points_->take_births())
         if (watch_) watch_->inherit(birth.child, birth.parent);
@@ -129,7 +132,8 @@ void StagedRun::begin_3d(const std::function<FlowColumns(const Marks&)>& columns
     const Status& now = columns_->status();  // what they gave counts as left
     converted_.mass = now.mass_left - before.mass_left;
     converted_.energy = now.energy_left - before.energy_left;
-    converted_.lost = converted_.energy - points_->status().energy_given;
+    // Points from the start on are what sums begin with: the release never stood on the ramp of a barrier as columns.
+    converted_.lost = scene_.solid->from > 0.0 ? converted_.energy - points_->status().energy_given : 0.0;
     for (std::size_t axis = 0; axis < 2; ++axis)
         converted_.momentum[axis] = now.momentum_left[axis] - before.momentum_left[axis];
     sample(points_->status().time);

@@ -77,15 +77,22 @@ private:
     void step_points(double until);
     void convert_to_3d();
     void note_departed();
-    void convert_to_2d();
+    using PlaceOf =
+        std::function<Vec2(const DepartedPoint&, const Vec2&)>;  ///< of a column of a point that has come there
+    using Allowed = std::function<bool(Index, Index)>;           ///< of cells of nodes
+    void convert_to_2d(const PlaceOf& place);
+    void clear_ramps();
     void end_3d();
     void watch_columns(double before, double until);
     void sample_columns();
     void step_columns_alone(double until);
     Vec2 place_of_column(const DepartedPoint& point, const Vec2& to);
-    bool may_stand(const DepartedPoint& point, const Vec2& x, const std::function<bool(Index, Index)>& allowed) const;
-    std::optional<Vec2> nearest_before(const DepartedPoint& point, const Vec2& x,
-                                       const std::function<bool(Index, Index)>& allowed) const;
+    Vec2 where_allowed(const DepartedPoint& point, const Vec2& to) const;
+    bool may_stand(const DepartedPoint& point, const Vec2& x, const Allowed& allowed) const;
+    Vec2 in_cell(Index i, Index j, const Vec2& x) const;
+    std::optional<Vec2> edge_before(const DepartedPoint& point, const Vec2& x, const Allowed& allowed) const;
+    std::optional<Vec2> nearest_before(const DepartedPoint& point, const Vec2& x, const Allowed& allowed) const;
+    double share_above_ramp(const DepartedPoint& point, const Vec2& x) const;
     bool is_raised(Index i, Index j) const;
     bool on_raised(const Vec2& x) const;
     void mark_raised();

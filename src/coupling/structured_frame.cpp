@@ -95,24 +95,29 @@ void StructuredRun::particle_fields(Frame& frame) {
 void StructuredRun::node_fields(Frame& frame) {
     const StructuredBody& body = flow().body();
     const GridGeometry& g = bed_.geometry;
+    const double footprint = map_.footprint_depth();
     NodeFields fields(store_, frame.nodes, g.size());
 #pragma omp parallel for schedule(static)
     for (Index j = 0; j < g.ny; ++j)
         for (Index i = 0; i < g.nx; ++i) {
-            const Index n = j * g.nx + i;
             const NodePeak& peak = map_.peak(body.grid.at(i, j));
-            fields.stand(n, bed_.at(i, j), peak, peak.arrival_time(map_.footprint_depth()));
+            fields.stand(j * g.nx + i, bed_.at(i, j), peak, peak.arrival_time(footprint));
         }
     for_each_node(body.grid, body.active.work, [&](Index k, Index n) {
         const StructuredBody::Moved& node = body.moved[k];
         const StructuredBody::NodeGround& ground = body.ground[k];
         const double h = StructuredMap::depth_of(body, k), up = map_.climb(k, node.vx, node.vy);
         if (!(h > 0.0)) return;
-        // Peaks were noted before the last drift: what stands there now is one too.
-        fields.peak_depth[n] = std::max(fields.peak_depth[n], h);
+        const double density = StructuredMap::density_of(body, k),
+                     pressure = density * StructuredMap::pressing(body, k) * h,
+                     speed = std::sqrt(node.vx * node.vx + node.vy * node.vy + up * up);
+        // Peaks were noted before the last drift, and the next step notes what stands there now. No frame is ahead of its
+        // own, and none changes the run.
+        NodePeak peak = map_.peak(k);
+        peak.note({h, speed, pressure, density}, status_.time, footprint);
+        fields.stand(n, fields.elevation[n], peak, peak.arrival_time(footprint));
         fields.flow(n, {h, std::sqrt(1.0 + ground.slope_x * ground.slope_x + ground.slope_y * ground.slope_y), node.vx,
-                        node.vy, up, std::sqrt(node.vx * node.vx + node.vy * node.vy + up * up),
-                        StructuredMap::density_of(body, k) * StructuredMap::pressing(body, k) * h});
+                        node.vy, up, speed, pressure});
     });
 }
 

@@ -60,7 +60,7 @@ public:
         elevation = made("elevation", "m"), depth = none("depth", "m", 1), thickness = none("thickness", "m", 1);
         surface = made("surface", "m"), velocity = none("velocity", "m/s", 3), speed = none("speed", "m/s", 1);
         pressure = none("pressure", "Pa", 1);
-        peak_depth = made("peak_depth", "m"), peak_speed_ = made("peak_speed", "m/s");
+        peak_depth_ = made("peak_depth", "m"), peak_speed_ = made("peak_speed", "m/s");
         peak_pressure_ = made("peak_pressure", "Pa"), peak_dynamic_ = made("peak_dynamic_pressure", "Pa");
         arrival_ = made("arrival_time", "s");
     }
@@ -68,7 +68,7 @@ public:
     /// A node's ground [m], NaN where it has no data, its peaks so far, and when material arrived [s].
     void stand(Index n, double ground, const NodePeak& peak, double arrival_time) {
         elevation[n] = surface[n] = ground;
-        peak_depth[n] = peak.depth, peak_speed_[n] = peak.speed, peak_pressure_[n] = peak.pressure;
+        peak_depth_[n] = peak.depth, peak_speed_[n] = peak.speed, peak_pressure_[n] = peak.pressure;
         peak_dynamic_[n] = peak.dynamic_pressure, arrival_[n] = arrival_time;
     }
 
@@ -82,11 +82,10 @@ public:
         speed[n] = of.speed, pressure[n] = of.pressure;
     }
 
-    double *elevation, *depth, *thickness, *surface, *velocity, *speed, *pressure,
-        *peak_depth;  ///< a model may add to them
+    double *elevation, *depth, *thickness, *surface, *velocity, *speed, *pressure;  ///< a model may add to them
 
 private:
-    double *peak_speed_, *peak_pressure_, *peak_dynamic_, *arrival_;
+    double *peak_depth_, *peak_speed_, *peak_pressure_, *peak_dynamic_, *arrival_;
 };
 
 }  // namespace frana
