@@ -96,9 +96,6 @@ private:
         stage.law = law(stage);
         stage.stuck = given("stuck") && case_.flag(prefix_ + "stuck");
         stage.stuck_where_resolved = !given("stuck") && mud_of_bed() && !given("bed_friction");
-        if (stage.stuck && given("bed_friction"))
-            problems_.add(case_.place(prefix_ + "bed_friction"), "found with stage.stuck = true",
-                          "expected one of both: what is stuck does not slide", "remove one of them");
         stage.split = case_.flag(prefix_ + "split");
         stage.bed_friction = number_or("bed_friction", friction_at_rest(scene_.bed_law));
         stage.whole_bed_law = !given("bed_friction") && (scene_.bed_laws() || hangs_on_speed(scene_.bed_law));
@@ -133,8 +130,9 @@ private:
         const std::string word = given("transfer") ? case_.word(prefix_ + "transfer") : sand ? "flip" : "tpic";
         stage.transfer = word == "apic" ? Transfer::apic : word == "flip" ? Transfer::flip : Transfer::tpic;
         stage.blending = number_or("blending", std::sqrt(stage.cell / scene_.gravity));
-        if (given("blending") && word != "flip")
-            problems_.add(case_.place(prefix_ + "blending"), fmt::format("found with stage.transfer = \"{}\"", word),
+        if (given("blending") && word != "flip")  // by default: a word that is given has its row of combinations
+            problems_.add(case_.place(prefix_ + "blending"),
+                          fmt::format("found with a law that has stage.transfer = \"{}\"", word),
                           "expected it with \"flip\" only", "remove it, or choose \"flip\"");
     }
 
