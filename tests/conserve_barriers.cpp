@@ -392,6 +392,7 @@ TEST_CASE("What runs up the face of a dam and back has not gone over it", "[barr
         scene.barriers[0].shape = dam_shape();
         scene.particles.vx.assign(scene.particles.x.size(), speed);
         scene.bed_law = bed::None{};
+        scene.solid->cell = 0.5, scene.solid->spacing = 0.25;  // an eighth of the points show it as well
         if (!space) scene.solid.reset();
         const std::unique_ptr<Simulation> run = make_simulation(scene);
         run_to(*run, 2.0);

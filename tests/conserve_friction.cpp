@@ -18,10 +18,10 @@ namespace {
 
 constexpr double kBefore = 0.3, kBehind = 0.8, kSlope = 0.5;
 
-Scene on_slope(const BedLaw& law, double x0, double x1) {
+Scene on_slope(const BedLaw& law, double x0, double x1, double half_width = 4) {
     Scene scene = scene_on(101, 21, 1.0, [](double x, double) { return 60.0 - kSlope * x; });
     scene.particles = {};
-    fill(scene, [=](double x, double y) { return x > x0 && x < x1 && y > 6 && y < 14 ? 1.5 : 0.0; });
+    fill(scene, [=](double x, double y) { return x > x0 && x < x1 && std::abs(y - 10) < half_width ? 1.5 : 0.0; });
     scene.particles.vx.assign(scene.particles.x.size(), 6.0);
     scene.bed_law = law;
     scene.end = 3.0;
@@ -120,7 +120,7 @@ TEST_CASE("What slides from one friction onto another stops where friction has t
     const double speed = 6.0 / cosine, before = (border - start) / cosine;
     const double behind = (0.5 * speed * speed + weight * (kSlope - kBefore) * before) / (weight * (kBehind - kSlope));
     const auto way = [&](const std::function<void(Scene&)>& edit) {
-        Scene scene = on_slope(bed::Coulomb{kBefore}, 5, 17);
+        Scene scene = on_slope(bed::Coulomb{kBefore}, 5, 17, 2);
         scene.friction = by_place<bed::Coulomb>(
             scene, [=](double x, double) { return bed::Coulomb{x < border ? kBefore : kBehind}; });
         edit(scene);

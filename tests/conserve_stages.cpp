@@ -154,7 +154,7 @@ TEST_CASE("A slab that slides becomes 3D and particles again without a change of
     constexpr double slope = 0.5, mu = 0.3;
     Scene scene = scene_on(81, 21, 1.0, [](double x, double) { return 50.0 - slope * x; });
     scene.particles = {};
-    fill(scene, [](double x, double y) { return x > 5 && x < 17 && y > 6 && y < 14 ? 1.5 : 0.0; });
+    fill(scene, [](double x, double y) { return x > 5 && x < 17 && y > 8 && y < 12 ? 1.5 : 0.0; });
     scene.particles.vx.assign(scene.particles.x.size(), 6.0);
     scene.bed_law = GENERATE(BedLaw(bed::Coulomb{mu}), BedLaw(bed::Voellmy{mu, 200.0}),
                              BedLaw(bed::Pouliquen{mu, 0.6, 0.3, 0.05, 0.6}));

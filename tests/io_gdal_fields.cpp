@@ -220,7 +220,7 @@ Vec2 middle_in_zone_32() {
     return {std::round(x), std::round(y)};
 }
 
-/// Share of a cell of zone 32 that lies in the square, counted on 40 x 40 places.
+/// Share of a cell of zone 32 that lies in the square, counted on 10 x 10 places: a straight edge to 0.05.
 double share_in_square(const GridGeometry& grid, Index i, Index j) {
     static const gdal::Transformation back = [] {
         OGRSpatialReference from, to;
@@ -228,7 +228,7 @@ double share_in_square(const GridGeometry& grid, Index i, Index j) {
         to.importFromEPSG(32633);
         return gdal::Transformation(OGRCreateCoordinateTransformation(&from, &to));
     }();
-    constexpr int kPlaces = 40;
+    constexpr int kPlaces = 10;
     int inside = 0;
     for (int n = 0; n < kPlaces; ++n)
         for (int m = 0; m < kPlaces; ++m) {

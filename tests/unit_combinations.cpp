@@ -26,8 +26,9 @@ std::vector<std::string> examples(const Values& values, bool named = true) {
     if (are == Are::above_zero || are == Are::zero) return {named == (are == Are::zero) ? "0" : "0.5"};
     if (are == Are::on || are == Are::off) return {named == (are == Are::on) ? "true" : "false"};
     if (values.are == Are::without) return {"[\"png\"]"};
-    if (are == Are::given && !named) return {};
-    if (are == Are::given) return {find_parameter(values.key)->kind == Kind::integer ? "1" : "0.5"};
+    const bool any = are == Are::given || are == Are::present;
+    if (any && !named) return {};
+    if (any) return {find_parameter(values.key)->kind == Kind::integer ? "1" : "0.5"};
     if (values.are == Are::tables) return {""};
     std::vector<std::string> all = find_parameter(values.key)->choices;
     all.erase(std::remove_if(all.begin(), all.end(),
@@ -72,7 +73,8 @@ const std::map<std::string, std::string> kTables = {
     {"stage", "[[stage]]\nmodel = \"solid_flow\"\n"},
     {"inflow", "[[inflow]]\nname = \"a\"\nline = [[0, 0], [9, 0]]\nvolume = 10\n"},
     {"section", "[[section]]\nname = \"a\"\nline = [[0, 0], [9, 0]]\n"},
-    {"barrier", "[[barrier]]\noutline = \"wall.geojson\"\nheight = 3\n"}};
+    {"barrier", "[[barrier]]\noutline = \"wall.geojson\"\nheight = 3\n"},
+    {"insitu", "[[insitu]]\nname = \"a\"\nkind = \"threshold\"\nfield = \"depth\"\nfrom = 1\n"}};
 
 /// "release.at" -> "release.0.at"; other keys as they are.
 std::string in_first_table(const std::string& key) {
@@ -80,13 +82,19 @@ std::string in_first_table(const std::string& key) {
     return among(repeated_tables(), key.substr(0, dot)) ? key.substr(0, dot) + ".0" + key.substr(dot) : key;
 }
 
-void parse(Sets sets, const std::vector<std::string>& tables) {
+void parse(Sets sets, std::vector<std::string> tables) {
     if (sets.count("erodible.bed_evolves")) give(sets, "erodible.law", "energy");  // which has all of its numbers
     complete(sets);
     std::vector<std::string> arguments;
     for (const auto& [key, value] : sets) arguments.push_back(in_first_table(key) + "=" + value);
     CAPTURE(arguments);
     std::string text = kLeast;
+    const std::string depth = "depth = 1\n";  // of the first release: a surface stands for it
+    if (sets.count("release.surface")) text.erase(text.find(depth), depth.size());
+    for (const auto& [key, value] : sets) {
+        const std::string table = key.substr(0, key.find('.'));
+        if (kTables.count(table) && !among(tables, table)) tables.push_back(table);
+    }
     for (const std::string& table : tables) text += kTables.at(table);
     CaseFile::parse(text, "case.toml", arguments);
 }

@@ -198,7 +198,8 @@ TEST_CASE("What does not go with the table is said in a sentence", "[scene]") {
     CHECK_THAT(only(table + "return_period = 50\n"), Contains("found 50") && Contains("10, 30, 100 or 300 years"));
     CHECK_THAT(only(table + "altitude_limits = [1500, 1000]\n"), Contains("found 1000 after 1500"));
     CHECK_THAT(only(table + "curvature_limits = [0.0, 0.02, 0.01]\n"), Contains("expected numbers that grow"));
-    CHECK_THAT(only(table + "mu = 0.2\n"), Contains("material.bed.mu: found together with table"));
+    CHECK_THAT(only(table + "mu = 0.2\n"),
+               Contains("material.bed.mu: found 0.2 with material.bed.table = \"voellmy-salm\""));
     CHECK_THAT(only(table + "volume_class = \"huge\"\n"), Contains("volume_class"));
     CHECK_THAT(only("mu = 0.2\nxi = 400\nreturn_period = 30\n"), Contains("return_period"));
     CHECK_THAT(problem_of(with_bed(table, "coulomb")), Contains("expected law = \"voellmy\""));

@@ -141,7 +141,7 @@ TEST_CASE("A run may write no frames at all", "[case][insitu]") {
 TEST_CASE("Outlines of particles for a GIS are refused", "[case][insitu]") {
     CHECK(problem_of("[[insitu]]\nname = \"a\"\nkind = \"threshold\"\nfield = \"depth\"\nfrom = 1\nof = "
                      "\"particles\"\ngis = true\n") ==
-          "slide/case.toml:14: insitu.0.gis: found true together with of = \"particles\"; expected the grid, whose "
+          "slide/case.toml:14: insitu.0.gis: found true with insitu.of = \"particles\"; expected the grid, whose "
           "cells have an outline; remove one of them");
 }
 

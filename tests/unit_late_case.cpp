@@ -145,7 +145,7 @@ TEST_CASE("A later release that stands in the elevation model leaves it when it 
 TEST_CASE("What a late release cannot be is said in a sentence", "[scene][late]") {
     CHECK(says(kFirst + kSecond + "at = 20\n", "release.1.at: found 20 s; expected a time before time.end = 20 s"));
     CHECK(says(kFirst + kSecond + "at = -1\n", "release.1.at: found -1"));
-    CHECK(says(kFirst + kSecond + "at = 2\nwhen_hit = true\n", "release.1.at: found together with when_hit"));
+    CHECK(says(kFirst + kSecond + "at = 2\nwhen_hit = true\n", "release.1.at: found 2 with release.when_hit = true"));
     CHECK(says(kFirst + "when_hit = true\n" + kSecond + "when_hit = true\n",
                "release.0.when_hit: found true for every release, and no [[inflow]]"));
     const std::string cut = kFirst + kSecond + "at = 2\nincluded_in_dem = true\n";

@@ -1,8 +1,10 @@
 #pragma once
 // What every model saves of its points between two steps. It is their numbers in their order, and the tiles they are sorted by.
+#include <algorithm>
 #include <string>
 
 #include "base/error.h"
+#include "base/staggered.h"
 #include "mpm/tile_grid.h"
 #include "observe/archive.h"
 
@@ -12,16 +14,37 @@ inline UserError misfit(const std::string& what) {
     return UserError("the kept state does not fit this case: " + what + "; run without --resume");
 }
 
-/// All columns of `points`, and their ids.
-template <class Points>
-void serialize_points(Archive& archive, Points& points) {
+inline void serialize_array(Archive& archive, const std::string& name, Array& column) { archive.array(name, column); }
+
+/// Every float is a double.
+inline void serialize_array(Archive& archive, const std::string& name, ArrayOf<float>& column) {
+    Array wide(column.begin(), column.end());
+    archive.array(name, wide);
+    if (!archive.loading()) return;
+    column.resize(wide.size());
+    std::transform(wide.begin(), wide.end(), column.begin(), [](double value) { return static_cast<float>(value); });
+}
+
+/// All columns of `points`, and their ids; name(n): what the archive calls column n.
+template <class Points, class Name>
+void serialize_points(Archive& archive, Points& points, const Name& name) {
     const Archive::Part part(archive, "points");
-    int n = 0;
-    points.each([&](auto& column) { archive.array("column_" + std::to_string(n++), column); });
+    std::size_t n = 0;
+    points.each([&](auto& column) { serialize_array(archive, name(n++), column); });
     archive.array("id", points.id);
     points.each([&](auto& column) {
         if (column.size() != points.id.size()) throw misfit("its columns of points differ in length");
     });
+}
+template <class Points>
+void serialize_points(Archive& archive, Points& points) {
+    serialize_points(archive, points, [](std::size_t n) { return "column_" + std::to_string(n); });
+}
+
+/// The tiles that points are sorted by, and which points each has.
+inline void serialize_tiles(Archive& archive, ActiveTiles& active) {
+    archive.array("tile", active.tile);
+    archive.array("begin", active.begin);
 }
 
 /// Refuses tiles that do not hold so many points, each in one of a grid's `tiles`.

@@ -182,24 +182,10 @@ void CaseReader::check_release(const std::string& prefix) {
         case_.word(prefix + "depth").rfind("field:", 0) == 0 && !there("outline"))
         wrong(prefix + "depth", "found an attribute without an outline", "expected the outline whose features have it",
               "give outline, or a number");
-    if (!case_.given(prefix + "surface")) return;
-    if (case_.word(prefix + "thickness") == "normal")
-        wrong(prefix + "thickness", "found \"normal\" together with surface",
-              "expected \"vertical\": depth = surface - bed is vertical", "remove thickness, or give depth");
-    if (case_.flag(prefix + "included_in_dem"))
-        wrong(prefix + "included_in_dem", "found true together with surface",
-              "expected depth, since the elevation model is the surface already",
-              "give depth = ..., a number or a raster of the thickness");
 }
 
-/// resolved.toml writes the defaults of both keys.
 void CaseReader::check_release_time(const std::string& prefix) {
-    const auto there = [&](const char* name) { return case_.given(prefix + name); };
-    const double at = there("at") ? case_.number(prefix + "at") : 0.0;
-    const bool when_hit = there("when_hit") && case_.flag(prefix + "when_hit");
-    if (at > 0.0 && when_hit)
-        wrong(prefix + "at", "found together with when_hit",
-              "expected one of the two: a time, or the flow that sets it going", "remove one of them");
+    const double at = case_.given(prefix + "at") ? case_.number(prefix + "at") : 0.0;
     if (case_.given("time.end") && at > 0.0 && at >= case_.number("time.end"))
         wrong(prefix + "at", fmt::format("found {:.6g} s", at),
               fmt::format("expected a time before time.end = {:.6g} s, or it never enters", case_.number("time.end")),
@@ -293,17 +279,10 @@ void CaseReader::check_forest_speeds() {
               "give a higher speed, or remove it");
 }
 
-/// A table of friction goes with Voellmy's law alone, and says all of its numbers.
+/// What a table of friction needs.
 void CaseReader::check_friction_table() {
     const std::string of = "material.bed.";
     if (!friction_table()) return;
-    if (!misread_.count(of + "law") && case_.word(of + "law") != "voellmy")
-        wrong(of + "table", fmt::format("found with law = \"{}\"", case_.word(of + "law")),
-              "expected law = \"voellmy\", whose mu and xi it has", "choose that law, or remove the table");
-    for (const char* name : {"mu", "friction_angle_deg", "xi"})
-        if (case_.given(of + name))
-            wrong(of + name, "found together with table", "expected one of them",
-                  "remove one of them, or give it in a [[material.zone]], which wins over the table");
     if (case_.count("inflow") > 0 && !case_.given(of + "volume_class") && !misread_.count(of + "volume_class"))
         wrong(of + "volume_class", "not given, and material comes in by [[inflow]]",
               "expected the size of the avalanche, which releases alone do not tell",
@@ -432,15 +411,14 @@ void CaseReader::check_combinations() {
     const auto unread = [&](const Values& values) { return misread_.count(values.key) > 0; };
     for (const Combination& row : combinations()) {
         if (unread(row.refused) || std::any_of(row.with.begin(), row.with.end(), unread)) continue;
-        if (!row.found(case_)) continue;
-        const std::string key = row.refused.key_in(case_);
-        if (unused(key) || !done.insert(key + row.expected).second) continue;
-        if (row.refused.are != Values::Are::tables) {
-            wrong(key, row.found_text(case_), row.expected, row.way_out);
-            continue;
+        for (const std::string& key : row.found(case_)) {
+            if (unused(key) || !done.insert(key + row.expected).second) continue;
+            const std::string found = row.found_text(case_, key), first = key + ".0";
+            if (row.refused.are != Values::Are::tables)
+                wrong(key, found, row.expected, row.way_out);
+            else
+                problems_.add(line_of(first + "."), case_.table_place(first), found, row.expected, row.way_out);
         }
-        const std::string first = key + ".0";
-        problems_.add(line_of(first + "."), case_.table_place(first), row.found_text(case_), row.expected, row.way_out);
     }
 }
 

@@ -24,20 +24,22 @@ bool among(const std::vector<std::string>& words, const std::string& word) {
 bool of_words(Are are) { return are == Are::words || are == Are::others; }
 
 /// As messages write it.
-std::string value_text(const CaseFile& file, const Values& values) {
-    if (of_words(values.are)) return "\"" + file.word(values.key) + "\"";
-    if (values.are == Are::given && file.is_text(values.key)) return "\"" + file.word(values.key) + "\"";
+std::string value_text(const CaseFile& file, const Values& values, const std::string& key) {
+    if (of_words(values.are) || (values.are != Are::tables && file.is_text(key))) return "\"" + file.word(key) + "\"";
     if (values.are == Are::on || values.are == Are::on_later) return "true";
     if (values.are == Are::off) return "false";
     if (values.are == Are::tables) return (values.key[0] == 'i' ? "an " : "a ") + values.key;
-    return fmt::format("{:.6g}", file.number(values.key_in(file)));
+    return fmt::format("{:.6g}", file.number(key));
 }
 
-/// "release.at" -> "release.0.at", "release.1.at", as many as there are; other keys as they are.
-std::vector<std::string> keys_of(const CaseFile& file, const std::string& key) {
+/// "release.at" -> "release.0.at", "release.1.at", as many as there are; other keys as they are. With
+/// a neighbour in such a table the one key in the same.
+std::vector<std::string> keys_of(const CaseFile& file, const std::string& key, const std::string& neighbour) {
     const std::size_t dot = key.find('.');
     const std::string table = key.substr(0, dot);
     if (dot == std::string::npos || !among(repeated_tables(), table)) return {key};
+    if (neighbour.compare(0, dot + 1, table + ".") == 0)
+        return {neighbour.substr(0, neighbour.rfind('.')) + key.substr(dot)};
     std::vector<std::string> keys;
     for (Index i = 0; i < file.count(table); ++i) keys.push_back(fmt::format("{}.{}{}", table, i, key.substr(dot)));
     return keys;
@@ -51,6 +53,7 @@ bool enters_later(const CaseFile& file, const std::string& key) {
 
 bool holds(const CaseFile& file, const Values& values, const std::string& key) {
     if (values.are == Are::tables) return file.count(key) > 0;
+    if (values.are == Are::present) return file.given(key);
     if (values.are == Are::given) return file.given(key) && (file.is_text(key) || file.number(key) > 0.0);
     if (!file.has(key)) return false;
     switch (values.are) {
@@ -219,58 +222,24 @@ void add_erodible_bed(std::vector<Combination>& table) {
                          "remove one of them"});
 }
 
-/// Where material cannot be left behind as bed.
-void add_deposits(std::vector<Combination>& table) {
-    const Values deposits = is_not("deposition.law", {"none"});
-    table.push_back({{"erodible.bed_evolves", Are::off},
-                     {deposits},
-                     "expected true: what is left behind raises the ground",
-                     "remove it, or the deposition"});
-    table.push_back({is_not("scheme.shape", {"quadratic"}),
-                     {deposits},
-                     "expected \"quadratic\", the shapes that share out a bed",
-                     "remove it, or the deposition"});
-    table.push_back(
-        {is("scheme.preset", {"paper"}),
-         {deposits},
-         "expected \"default\" or \"fast\": particles of that preset carry a depth that no bed can take over",
-         "remove it, or the deposition"});
-    for (const Values& other : {is_not("material.structure.law", {"none"}), is("water.model", {"free"})})
-        table.push_back({other,
-                         {deposits},
-                         "expected \"none\": a mass that holds together, and free water, leave no bed behind",
-                         "remove one of them"});
-    table.push_back({{"stage", Are::tables},
-                     {deposits},
-                     "expected none: points in 3D leave no bed behind",
-                     "remove the stage, or the deposition"});
-}
+/// What takes mass out of the flow and leaves it on the ground: where it cannot.
+struct Leaves {
+    Values with;
+    std::string what, leave, it;  ///< "what is left behind", "leave no bed behind", "the deposition"
+};
 
-/// Where trees cannot take mass out of the flow.
-void add_forest(std::vector<Combination>& table) {
-    const Values forest{"forest.detrainment", Are::given};
-    table.push_back({{"erodible.bed_evolves", Are::off},
-                     {forest},
-                     "expected true: what trees hold back raises the ground",
-                     "remove it, or the forest"});
-    table.push_back({is_not("scheme.shape", {"quadratic"}),
-                     {forest},
-                     "expected \"quadratic\", the shapes that share out a bed",
-                     "remove it, or the forest"});
-    table.push_back(
-        {is("scheme.preset", {"paper"}),
-         {forest},
-         "expected \"default\" or \"fast\": particles of that preset carry a depth that no bed can take over",
-         "remove it, or the forest"});
+void add_leaves(std::vector<Combination>& table, const Leaves& leaves) {
+    const std::string way_out = "remove it, or " + leaves.it;
+    const auto refuse = [&](Values refused, const std::string& expected, const std::string& advice) {
+        table.push_back({std::move(refused), {leaves.with}, "expected " + expected, advice});
+    };
+    refuse({"erodible.bed_evolves", Are::off}, "true: " + leaves.what + " raises the ground", way_out);
+    refuse(is_not("scheme.shape", {"quadratic"}), "\"quadratic\", the shapes that share out a bed", way_out);
+    refuse(is("scheme.preset", {"paper"}),
+           "\"default\" or \"fast\": particles of that preset carry a depth that no bed can take over", way_out);
     for (const Values& other : {is_not("material.structure.law", {"none"}), is("water.model", {"free"})})
-        table.push_back({other,
-                         {forest},
-                         "expected \"none\": a mass that holds together, and free water, leave nothing in a forest",
-                         "remove one of them"});
-    table.push_back({{"stage", Are::tables},
-                     {forest},
-                     "expected none: points in 3D leave nothing in a forest",
-                     "remove the stage, or the forest"});
+        refuse(other, "\"none\": a mass that holds together, and free water, " + leaves.leave, "remove one of them");
+    refuse({"stage", Are::tables}, "none: points in 3D " + leaves.leave, "remove the stage, or " + leaves.it);
 }
 
 /// What the schemes of the depth-averaged flow do not have.
@@ -352,6 +321,47 @@ void add_late_scars(std::vector<Combination>& table) {
                      "remove erodible.bed_evolves, or give an elevation model without the mass"});
 }
 
+/// Keys of one table that say different things of the same.
+void add_within_tables(std::vector<Combination>& table) {
+    const Values normal = is("release.thickness", {"normal"}), in_dem{"release.included_in_dem", Are::on};
+    const Values surface{"release.surface", Are::present};
+    table.push_back({normal,
+                     {surface},
+                     "expected \"vertical\": depth = surface - bed is vertical",
+                     "remove thickness, or give depth"});
+    table.push_back({in_dem,
+                     {surface},
+                     "expected depth, since the elevation model is the surface already",
+                     "give depth = ..., a number or a raster of the thickness"});
+    table.push_back({{"release.at", Are::above_zero},
+                     {{"release.when_hit", Are::on}},
+                     "expected one of the two: a time, or the flow that sets it going",
+                     "remove one of them"});
+    const std::string one_of_both = "expected one of both: what is stuck does not slide";
+    table.push_back(
+        {{"barrier.friction", Are::above_zero}, {{"barrier.stuck", Are::on}}, one_of_both, "remove one of them"});
+    table.push_back(
+        {{"stage.bed_friction", Are::present}, {{"stage.stuck", Are::on}}, one_of_both, "remove one of them"});
+    table.push_back({{"stage.blending", Are::present},
+                     {is("stage.transfer", {"tpic", "apic"})},
+                     "expected it with \"flip\" only",
+                     "remove it, or choose \"flip\""});
+    table.push_back({{"insitu.gis", Are::on},
+                     {is("insitu.of", {"particles"})},
+                     "expected the grid, whose cells have an outline",
+                     "remove one of them"});
+    const Values by_table = is_not("material.bed.table", {"none"});
+    table.push_back({by_table,
+                     {is_not("material.bed.law", {"voellmy"})},
+                     "expected law = \"voellmy\", whose mu and xi it has",
+                     "choose that law, or remove the table"});
+    for (const char* key : {"material.bed.mu", "material.bed.friction_angle_deg", "material.bed.xi"})
+        table.push_back({{key, Are::present},
+                         {by_table},
+                         "expected one of them",
+                         "remove one of them, or give it in a [[material.zone]], which wins over the table"});
+}
+
 std::string with_text(const Combination& row) {
     std::string text;
     for (const Values& values : row.with) text += (text.empty() ? "" : ", or ") + values.text();
@@ -361,10 +371,11 @@ std::string with_text(const Combination& row) {
 
 }  // namespace
 
-std::string Values::key_in(const CaseFile& file) const {
-    for (const std::string& one : keys_of(file, key))
-        if (holds(file, *this, one)) return one;
-    return {};
+std::vector<std::string> Values::keys_in(const CaseFile& file, const std::string& neighbour) const {
+    std::vector<std::string> found;
+    for (const std::string& one : keys_of(file, key, neighbour))
+        if (holds(file, *this, one)) found.push_back(one);
+    return found;
 }
 
 std::string Values::text() const {
@@ -386,28 +397,33 @@ std::string Values::text() const {
         case Are::off:
             return key + " = false";
         case Are::given:
+        case Are::present:
             return key;
         default:
             return "[[" + key + "]]";
     }
 }
 
-bool Combination::applies(const CaseFile& file) const {
-    const auto holds = [&](const Values& values) { return values.hold(file); };
+bool Combination::applies(const CaseFile& file, const std::string& key) const {
+    const auto holds = [&](const Values& values) { return !values.keys_in(file, key).empty(); };
     return std::any_of(with.begin(), with.end(), holds) && std::all_of(also.begin(), also.end(), holds);
 }
 
-bool Combination::found(const CaseFile& file) const {
-    const std::string key = refused.key_in(file);
-    if (key.empty() || (refused.are != Are::tables && !file.given(key))) return false;
-    return applies(file);
+std::vector<std::string> Combination::found(const CaseFile& file) const {
+    std::vector<std::string> keys;
+    for (const std::string& key : refused.keys_in(file))
+        if ((refused.are == Are::tables || file.given(key)) && applies(file, key)) keys.push_back(key);
+    return keys;
 }
 
-std::string Combination::found_text(const CaseFile& file) const {
-    const auto holds = std::find_if(with.begin(), with.end(), [&](const Values& values) { return values.hold(file); });
-    const Values& other = holds != with.end() ? *holds : with.front();
-    const std::string beyond = said.empty() ? fmt::format(" with {} = {}", other.key, value_text(file, other)) : said;
-    return "found " + value_text(file, refused) + beyond;
+std::string Combination::found_text(const CaseFile& file, const std::string& key) const {
+    std::string beyond = said;
+    for (const Values& other : with) {
+        const std::vector<std::string> keys = other.keys_in(file, key);
+        if (beyond.empty() && !keys.empty())
+            beyond = fmt::format(" with {} = {}", other.key, value_text(file, other, keys.front()));
+    }
+    return "found " + value_text(file, refused, key) + beyond;
 }
 
 const std::vector<Combination>& combinations() {
@@ -423,11 +439,15 @@ const std::vector<Combination>& combinations() {
         add_water(table);
         add_water_alone(table);
         add_erodible_bed(table);
-        add_deposits(table);
-        add_forest(table);
+        add_leaves(table, {is_not("deposition.law", {"none"}), "what is left behind", "leave no bed behind",
+                           "the deposition"});
+        add_leaves(
+            table,
+            {{"forest.detrainment", Are::given}, "what trees hold back", "leave nothing in a forest", "the forest"});
         add_space(table);
         add_late_releases(table);
         add_late_scars(table);
+        add_within_tables(table);
         table.push_back({is_not("output.film", {"none"}),
                          {{"output.formats", Are::without, {"vtk"}}},
                          "expected the frames that a film is made of",
@@ -440,7 +460,9 @@ const std::vector<Combination>& combinations() {
 
 bool refused_if_given(const CaseFile& file, const std::string& key) {
     return std::any_of(combinations().begin(), combinations().end(), [&](const Combination& row) {
-        return row.refused.key == key && (row.refused.are == Are::given || row.refused.hold(file)) && row.applies(file);
+        if (row.refused.key != without_numbers(key) || !row.applies(file, key)) return false;
+        const bool any = row.refused.are == Are::given || row.refused.are == Are::present;
+        return any || holds(file, row.refused, key);
     });
 }
 

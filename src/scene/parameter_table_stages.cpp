@@ -15,7 +15,7 @@ Parameter of_3d(Parameter parameter, const char* otherwise) {
     return absent(with(std::move(parameter), model, in_3d), otherwise);
 }
 
-/// Keys of one law of 3D material; other laws refuse them.
+/// Keys of laws of 3D material, which bring them; other laws refuse them.
 void add_laws(Table& table) {
     const char* const law = "stage.law";
     Parameter choice_of_law = make(law, Kind::choice, "", "law of the material in 3D");
@@ -23,44 +23,16 @@ void add_laws(Table& table) {
     table.push_back(of_3d(choice_of_law,
                           "bingham or a fluid, by the rheology or the bed law of mud; else sand as steep inside as the "
                           "bed's friction, or a fluid on a bed without"));
-    table.push_back(of_3d(number("stage.viscosity", "Pa s", not_negative, "viscosity of a fluid, or of bingham"),
-                          "the rheology's"));
-    table.push_back(
-        of_3d(number("stage.yield_stress", "Pa", positive, "yield stress of bingham or herschel_bulkley in shear"),
-              "the rheology's"));
-    table.push_back(of_3d(number("stage.shear_modulus", "Pa", positive, "stiffness of both below their yield stress"),
-                          "a hundred yield stresses"));
-    table.push_back(
-        of_3d(number("stage.sound_speed", "m/s", positive,
-                     "artificial speed of sound of fluids, with a yield stress or without, and of sand where no law is "
-                     "named: the density changes by about (speed / sound_speed)^2"),
-              "ten times the larger of the fastest speed and sqrt(2 g depth) when the stage begins"));
-    const auto of_laws = [&](Parameter parameter, std::vector<std::string> needed_by = {}) {
-        const std::string key = parameter.key.substr(parameter.key.find('.') + 1);
-        return with(std::move(parameter), law, solid::words_with(key), std::move(needed_by));
-    };
-    const std::vector<std::string> mud = {solid::HerschelBulkley::name}, sand = {solid::DruckerPrager::name};
-    table.push_back(of_laws(
-        number("stage.consistency", "Pa s^n", positive, "K of herschel_bulkley: tau = yield_stress + K rate^exponent"),
-        mud));
-    table.push_back(of_laws(
-        number("stage.exponent", "1", above_to(0.0, 2.0), "n of herschel_bulkley, below one for what thins with shear"),
-        mud));
-    table.push_back(of_laws(number("stage.friction_angle_deg", "degree", {0.0, 90.0, false, true},
-                                   "internal friction angle of drucker_prager"),
-                            sand));
-    table.push_back(of_laws(number("stage.cohesion", "Pa", not_negative, 0.0, "cohesion of drucker_prager")));
-    table.push_back(
-        of_laws(choice("stage.cone", {"triaxial", "plane_strain"}, "triaxial",
-                       "where drucker_prager is as strong as Mohr and Coulomb's law of that angle: in triaxial "
-                       "compression, or in plane strain, as heaps and slopes fail")));
-    table.push_back(
-        of_laws(number("stage.young_modulus", "Pa", positive,
-                       "stiffness of drucker_prager or elastic; the stiffer, the more steps: about 100 density "
-                       "gravity depth is enough"),
-                solid::words_with("young_modulus")));
-    table.push_back(of_laws(number("stage.poisson_ratio", "1", {0.0, 0.5, false, true}, 0.3,
-                                   "share of a strain that shows across it, of drucker_prager or elastic")));
+    for (const auto& [key, used_by, needed_by] : solid::shared_keys()) {
+        const std::string name = std::string("stage.") + key.name;
+        Parameter row = number(name.c_str(), key.unit, key.range, key.meaning);
+        if (!key.choices.empty())
+            row = choice(name.c_str(), key.choices, key.choices.front().c_str(), key.meaning);
+        else if (key.missing == laws::Missing::usual)
+            row.fallback = key.usual;
+        const bool by_case = key.missing == laws::Missing::none;  // a case without stage.law may have it too
+        table.push_back(by_case ? of_3d(std::move(row), key.absent) : with(std::move(row), law, used_by, needed_by));
+    }
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ private:
             !parameter.instead_of.empty() && case_.given(prefix + find_parameter(parameter.instead_of)->name());
         const bool alone =
             !parameter.only_with.empty() && !case_.given(prefix + find_parameter(parameter.only_with)->name());
-        if (unused || said_otherwise || alone || refused_if_given(case_, parameter.key)) return;
+        if (unused || said_otherwise || alone || refused_if_given(case_, key)) return;
         if (const Value* value = case_.find(key))
             out_ += fmt::format("{} = {}  # default\n", parameter.name(), value_text(parameter, *value));
         else if (!parameter.absent.empty())

@@ -86,9 +86,6 @@ public:
                           "correct it; an elevation is given by top");
         barrier.friction = case_.number(prefix_ + "friction");
         barrier.stuck = case_.flag(prefix_ + "stuck");
-        if (barrier.stuck && barrier.friction > 0.0)
-            problems_.add(case_.place(prefix_ + "friction"), "found with barrier.stuck = true",
-                          "expected one of both: what is stuck does not slide", "remove one of them");
         remark_buried(barrier);
         barrier.windows = windows();
         if (case_.word("material.structure.law") == "none") {  // structured columns meet boxes

@@ -79,9 +79,6 @@ private:
         entry.of_particles = case_.word(prefix + "of") == "particles";
         entry.picture = case_.flag(prefix + "picture");
         entry.gis = case_.flag(prefix + "gis");
-        if (entry.gis && entry.of_particles)
-            problems_.add(case_.place(prefix + "gis"), "found true together with of = \"particles\"",
-                          "expected the grid, whose cells have an outline", "remove one of them");
         read_fields(prefix, entry);
         read_line(prefix, entry);
         read_values(prefix, entry);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/constants.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
@@ -97,9 +96,6 @@ private:
         stage.law = law(stage);
         stage.stuck = given("stuck") && case_.flag(prefix_ + "stuck");
         stage.stuck_where_resolved = !given("stuck") && mud_of_bed() && !given("bed_friction");
-        if (stage.stuck && given("bed_friction"))
-            problems_.add(case_.place(prefix_ + "bed_friction"), "found with stage.stuck = true",
-                          "expected one of both: what is stuck does not slide", "remove one of them");
         stage.split = case_.flag(prefix_ + "split");
         stage.bed_friction = number_or("bed_friction", friction_at_rest(scene_.bed_law));
         stage.whole_bed_law = !given("bed_friction") && (scene_.bed_laws() || hangs_on_speed(scene_.bed_law));
@@ -134,8 +130,9 @@ private:
         const std::string word = given("transfer") ? case_.word(prefix_ + "transfer") : sand ? "flip" : "tpic";
         stage.transfer = word == "apic" ? Transfer::apic : word == "flip" ? Transfer::flip : Transfer::tpic;
         stage.blending = number_or("blending", std::sqrt(stage.cell / scene_.gravity));
-        if (given("blending") && word != "flip")
-            problems_.add(case_.place(prefix_ + "blending"), fmt::format("found with stage.transfer = \"{}\"", word),
+        if (given("blending") && word != "flip")  // by default: a word that is given has its row of combinations
+            problems_.add(case_.place(prefix_ + "blending"),
+                          fmt::format("found with a law that has stage.transfer = \"{}\"", word),
                           "expected it with \"flip\" only", "remove it, or choose \"flip\"");
     }
 
@@ -239,56 +236,55 @@ private:
                 "give stage.viscosity and stage.yield_stress, or remove what makes material.rheology differ");
         if (law == "of_bed") {
             stage.of_bed = true;
-            refuse_others("drucker_prager by the bed's friction", [](const auto& key) { return key == "sound_speed"; });
+            refuse_others("drucker_prager by the bed's friction",
+                          [](const std::string& key) { return key == "sound_speed"; });
             return solid::DruckerPrager::of({}, std::atan(friction_at_rest(scene_.bed_law)), 0.0);
         }
-        refuse_others(law, [&](const std::string& key) {
-            const std::vector<std::string> laws = solid::words_with(key);
-            return std::find(laws.begin(), laws.end(), law) != laws.end();
-        });
-        if (law == "drucker_prager" || law == "elastic") {
-            const solid::Elastic elastic = solid::Elastic::of(number("young_modulus"), number("poisson_ratio"));
-            if (law == "elastic") return elastic;
-            return drucker_prager(elastic);
-        }
-        double viscosity = 0.0, yield_stress = 0.0;
-        if (const auto* newtonian = std::get_if<rheology::Newtonian>(&scene_.rheology))
-            viscosity = newtonian->viscosity;
-        if (const auto* bingham = std::get_if<rheology::Bingham>(&scene_.rheology))
-            viscosity = bingham->viscosity, yield_stress = bingham->yield_stress;
-        if (const bed::Bingham* mud = mud_of_bed()) viscosity = mud->viscosity, yield_stress = mud->yield_stress;
-        viscosity = number_or("viscosity", viscosity);
-        if (law == "fluid") return solid::Fluid{0.0, viscosity};
-        yield_stress = number_or("yield_stress", yield_stress);
-        if (!(yield_stress > 0.0))
+        refuse_others(law, [&](const std::string& key) { return solid::has_key(law, key); });
+        const solid::Values value = [&](const std::string& name) { return value_of(name); };
+        if (solid::has_key(law, "yield_stress") && !(value("yield_stress").value_or(0.0) > 0.0))
             problems_.add(case_.place(prefix_ + "law"), fmt::format("found \"{}\" without a yield stress", law),
                           "expected stage.yield_stress, or that of material.rheology", "give one, or choose \"fluid\"");
-        constexpr double kStiff = 100.0;  // yield stresses: stiffer costs steps and changes nothing
-        const double shear = number_or("shear_modulus", kStiff * yield_stress);
-        if (law == "bingham") return solid::Bingham{0.0, shear, viscosity, yield_stress};
-        return solid::HerschelBulkley{0.0, shear, number("consistency"), number("exponent"), yield_stress};
+        if (solid::has_key(law, "cohesion") && !has_apex(*value("friction_angle_deg"), *value("cohesion"))) return {};
+        return solid::make(law, value);
+    }
+
+    /// Of a key of the stage's law, in the case or by default; else what the case's material has of that name.
+    std::optional<double> value_of(const std::string& name) const {
+        const std::string key = prefix_ + name;
+        if (case_.has(key)) {
+            const std::vector<std::string>& choices = find_parameter(key)->choices;
+            if (choices.empty()) return case_.number(key);
+            return static_cast<double>(std::find(choices.begin(), choices.end(), case_.word(key)) - choices.begin());
+        }
+        const bed::Bingham* mud = mud_of_bed();
+        if (name == "viscosity") {
+            if (const auto* newtonian = std::get_if<rheology::Newtonian>(&scene_.rheology)) return newtonian->viscosity;
+            if (const auto* bingham = std::get_if<rheology::Bingham>(&scene_.rheology)) return bingham->viscosity;
+            if (mud != nullptr) return mud->viscosity;
+        }
+        if (name == "yield_stress") {
+            if (const auto* bingham = std::get_if<rheology::Bingham>(&scene_.rheology)) return bingham->yield_stress;
+            if (mud != nullptr) return mud->yield_stress;
+        }
+        return {};
     }
 
     /// The cone's apex lies at the tension cohesion / tan(angle): without an angle there is none.
-    SolidLaw drucker_prager(const solid::Elastic& elastic) {
-        const double angle = number("friction_angle_deg"), cohesion = number("cohesion");
-        if (cohesion > 0.0 && !(angle > 0.0)) {
-            problems_.add(case_.place(prefix_ + "friction_angle_deg"),
-                          fmt::format("found {:.6g} with stage.cohesion = {:.6g} Pa", angle, cohesion),
-                          "expected an angle above 0: the cone of a cohesive material has an apex",
-                          "give an angle, a small one for clay that does not drain, or leave out the cohesion");
-            return elastic;
-        }
-        const bool plane = case_.word(prefix_ + "cone") == "plane_strain";
-        return solid::DruckerPrager::of(elastic, angle * constants::kDegree, cohesion,
-                                        plane ? solid::Cone::plane_strain : solid::Cone::compression);
+    bool has_apex(double angle, double cohesion) {
+        if (angle > 0.0 || !(cohesion > 0.0)) return true;
+        problems_.add(case_.place(prefix_ + "friction_angle_deg"),
+                      fmt::format("found {:.6g} with stage.cohesion = {:.6g} Pa", angle, cohesion),
+                      "expected an angle above 0: the cone of a cohesive material has an apex",
+                      "give an angle, a small one for clay that does not drain, or leave out the cohesion");
+        return false;
     }
 
     /// Keys of laws that this one does not take.
     template <class Takes>
     void refuse_others(const std::string& law, const Takes& takes) {
-        for (const std::string& key : solid::all_keys())
-            if (given(key.c_str()) && !takes(key)) unused(key.c_str(), law);
+        for (const solid::SharedKey& shared : solid::shared_keys())
+            if (given(shared.key.name) && !takes(shared.key.name)) unused(shared.key.name, law);
     }
 
     void unused(const char* name, const std::string& law) {

@@ -4,51 +4,16 @@
 // What else nodes have follows from the deposit.
 #include <fmt/core.h>
 
-#include <algorithm>
+#include <array>
 
-#include "mpm/stored_points.h"
+#include "mpm/stored_nodes.h"
 #include "shallow/depth_averaged.h"
 
 namespace frana {
 namespace {
 
-constexpr Index kNodes = kTile * kTile;  ///< of a tile
-
 constexpr const char* kColumnNames[] = {"x",   "y",   "mass", "vx",  "vy",  "cxx", "cxy",
                                         "cyx", "cyy", "r1x",  "r1y", "r2x", "r2y", "depth"};
-
-void serialize_array(Archive& archive, const char* name, Array& column) { archive.array(name, column); }
-
-/// Every float is a double.
-void serialize_array(Archive& archive, const char* name, ArrayOf<float>& column) {
-    Array wide(column.begin(), column.end());
-    archive.array(name, wide);
-    if (!archive.loading()) return;
-    column.resize(wide.size());
-    std::transform(wide.begin(), wide.end(), column.begin(), [](double value) { return static_cast<float>(value); });
-}
-
-/// `components` numbers at every node of the tiles; at(storage index) is where they lie.
-template <class At>
-void serialize_tiles(Archive& archive, const std::string& name, const Flow& flow, const std::vector<Index>& tiles,
-                     Index components, const At& at) {
-    std::vector<double> values;
-    if (!archive.loading()) values.reserve(tiles.size() * static_cast<std::size_t>(kNodes * components));
-    if (!archive.loading())
-        for (const Index tile : tiles)
-            for_each_node_of(flow.grid, tile,
-                             [&](Index k, Index, Index) { values.insert(values.end(), at(k), at(k) + components); });
-    archive.array(name, values);
-    if (!archive.loading()) return;
-    if (values.size() != tiles.size() * static_cast<std::size_t>(kNodes * components))
-        throw misfit("its nodes are not those of the tiles");
-    const double* from = values.data();
-    for (const Index tile : tiles)
-        for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
-            std::copy(from, from + components, at(k));
-            from += components;
-        });
-}
 
 }  // namespace
 
@@ -70,18 +35,11 @@ void DepthAveraged::serialize(Archive& archive) {
 }
 
 void DepthAveraged::serialize_points(Archive& archive) {
+    frana::serialize_points(archive, flow_.columns, [](std::size_t n) { return kColumnNames[n]; });
     const Archive::Part part(archive, "points");
-    Columns& c = flow_.columns;
-    std::size_t n = 0;
-    c.each([&](auto& column) { serialize_array(archive, kColumnNames[n++], column); });
-    archive.array("id", c.id);
-    archive.array("tile", flow_.active.tile);
-    archive.array("begin", flow_.active.begin);
+    serialize_tiles(archive, flow_.active);
     if (!archive.loading()) return;
-    c.each([&](const auto& column) {
-        if (column.size() != c.id.size()) throw misfit("its columns differ in length");
-    });
-    require_whole(flow_.active, flow_.grid.tiles(), c.count());
+    require_whole(flow_.active, flow_.grid.tiles(), flow_.columns.count());
     sorter_.list_tiles(flow_.grid, flow_.active);
     for (const Index tile : flow_.active.tile) flow_.active.quiet[tile] = 0;
 }
@@ -117,11 +75,14 @@ void DepthAveraged::serialize_nodes(Archive& archive) {
     archive.array("touched", in_reach);
     if (in_reach.size() != tiles.size()) throw misfit("its nodes are not those of the tiles");
     for (std::size_t n = 0; n < tiles.size(); ++n) flow_.in_reach[tiles[n]] = in_reach[n];
-    serialize_tiles(archive, "mass", flow_, tiles, 1, [&](Index k) { return &nodes.mass[k]; });
-    serialize_tiles(archive, "momentum", flow_, tiles, 2, [&](Index k) { return &nodes.deposits()[k].px; });
-    serialize_tiles(archive, "column_mass", flow_, tiles, 1, [&](Index k) { return &nodes.column_mass[k]; });
-    if (nodes.forced)
-        serialize_tiles(archive, "force", flow_, tiles, 2, [&](Index k) { return &nodes.deposits()[k].fx; });
+    const auto serialize = [&](const char* name, const auto& at) {
+        frana::serialize_nodes(archive, name, flow_.grid, tiles, at);
+    };
+    serialize("mass", [&](Index k) { return std::array{&nodes.mass[k]}; });
+    serialize("momentum", [&](Index k) { return std::array{&nodes.deposits()[k].px, &nodes.deposits()[k].py}; });
+    serialize("column_mass", [&](Index k) { return std::array{&nodes.column_mass[k]}; });
+    if (!nodes.forced) return;
+    serialize("force", [&](Index k) { return std::array{&nodes.deposits()[k].fx, &nodes.deposits()[k].fy}; });
 }
 
 void DepthAveraged::serialize_support(Archive& archive) {
@@ -164,7 +125,7 @@ void DepthAveraged::serialize_peaks(Archive& archive) {
     for (const Index tile : tiles)
         if (tile < 0 || tile >= flow_.grid.tiles()) throw misfit("its peaks lie outside the grid");
     const auto serialize_peak = [&](const char* name, LazyArray<double>& peak) {
-        serialize_tiles(archive, name, flow_, tiles, 1, [&](Index k) { return &peak[k]; });
+        frana::serialize_nodes(archive, name, flow_.grid, tiles, [&](Index k) { return std::array{&peak[k]}; });
     };
     serialize_peak("depth", peaks_.depth);
     serialize_peak("speed", peaks_.speed);

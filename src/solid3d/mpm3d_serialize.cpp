@@ -31,8 +31,7 @@ void Mpm3d::serialize(Archive& archive) {
     body_.ledger.serialize(archive);
     archive.numbers("drift", {&drift_});
     archive.number("next_id", next_id_);
-    archive.array("tile", body_.active.tile);
-    archive.array("begin", body_.active.begin);
+    serialize_tiles(archive, body_.active);
     timed_.serialize(archive);
     if (!archive.loading()) return;
     require_whole(body_.active, body_.grid.tiles(), body_.points.count());

@@ -29,8 +29,7 @@ void StructuredFlow::serialize(Archive& archive) {
     Index grains = body_.grains ? 1 : 0;
     archive.number("grains", grains);
     archive.number("next_id", halves_.next_id);
-    archive.array("tile", body_.active.tile);
-    archive.array("begin", body_.active.begin);
+    serialize_tiles(archive, body_.active);
     timed_.serialize(archive);
     if (!archive.loading()) return;
     if (grains != 0 && !body_.grains) begin_grains();

@@ -1,11 +1,13 @@
 // The state of free water between two steps, as it is serialized. It is the tiles of the next step with what is in
 // them, and the sums of the run.
 #include <algorithm>
+#include <array>
 
-#include "base/error.h"
+#include "mpm/stored_nodes.h"
 #include "water/water_flow.h"
 
 namespace frana {
+
 /// No water on the tiles of the list: what is taken up again may lie on others.
 void WaterFlow::clear_tiles() {
     for (const Index tile : body_.work) {
@@ -29,26 +31,13 @@ void WaterFlow::serialize(Archive& archive) {
     status_.ledger = since_start_.total();
     archive.array("tiles", body_.work);
     timed_.serialize(archive);
-    std::vector<double> cells;
-    const auto each = [&](auto&& body) {
-        for (const Index tile : body_.work) {
-            const Index first = body_.grid.at(body_.grid.tile_i(tile), body_.grid.tile_j(tile));
-            for (Index j = 0; j < kTile; ++j)
-                for (Index i = 0; i < kTile; ++i) body(first + j * body_.grid.stride() + i);
-        }
-    };
-    if (!archive.loading())
-        each([&](Index k) { cells.insert(cells.end(), {body_.now.h[k], body_.now.qx[k], body_.now.qy[k]}); });
-    archive.array("cells", cells);
-    const std::size_t expected = 3 * static_cast<std::size_t>(kTile * kTile) * body_.work.size();
-    if (cells.size() != expected) Archive::wrong_length("cells", cells.size(), expected);
-    if (!archive.loading()) return;
     for (const Index tile : body_.work)
-        if (tile < 0 || tile >= body_.grid.tiles())
-            throw UserError("the kept state does not fit this case: its water lies elsewhere; run without --resume");
-    body_.sums.resize(body_.work.size());
-    const double* v = cells.data();
-    each([&](Index k) { body_.now.h[k] = v[0], body_.now.qx[k] = v[1], body_.now.qy[k] = v[2], v += 3; });
+        if (tile < 0 || tile >= body_.grid.tiles()) throw misfit("its water lies elsewhere");
+    WaterFields& now = body_.now;
+    serialize_nodes(archive, "cells", body_.grid, body_.work, [&](Index k) {
+        return std::array{&now.h[k], &now.qx[k], &now.qy[k]};
+    });
+    if (archive.loading()) body_.sums.resize(body_.work.size());
 }
 
 }  // namespace frana

@@ -1,5 +1,6 @@
 // A bed law that was added as src/README.md says: a case names it, and the depth-averaged solver runs by it.
 #include <cmath>
+#include <variant>
 
 #include "base/constants.h"
 #include "base/error.h"
@@ -10,6 +11,15 @@
 using namespace frana;
 
 namespace {
+
+// The library is compiled without the added law, and it has to find what a scene holds where it expects it.
+template <class... Laws>
+constexpr bool same_layout(const std::variant<Laws...>*) {
+    using Without = std::variant<bed::None, bed::Coulomb, bed::Voellmy, bed::Manning, bed::Bingham, bed::Pouliquen>;
+    return sizeof(std::variant<Laws...>) == sizeof(Without) && alignof(std::variant<Laws...>) == alignof(Without) &&
+           sizeof...(Laws) == std::variant_size_v<Without> + 1;
+}
+static_assert(same_layout(static_cast<const BedLaw*>(nullptr)));
 
 constexpr double kDegree = constants::kPi / 180.0;
 
@@ -57,8 +67,11 @@ Mean mean_of(Simulation& simulation) {
 TEST_CASE("An added bed law has its word, its keys and their checks in the table of keys", "[toy_law]") {
     CHECK(describe("material.bed.law").find("pouliquen is mu(I); viscous is a toy") != std::string::npos);
     CHECK(describe("drag_rate") ==
-          "material.bed.drag_rate [1/s]\n    rate at which drag slows it\n    value:   a number above 0 [1/s]\n"
-          "    default: 0.5\n    only with material.bed.law = viscous\n");
+          "material.bed.drag_rate [1/s]\n    rate at which drag slows it\n    value:   a number above 0 [1/s] or the "
+          "name "
+          "of a raster\n    default: 0.5\n    only with material.bed.law = viscous\n"
+          "material.zone.drag_rate [1/s]\n    rate at which drag slows it\n    value:   a number above 0 [1/s]\n"
+          "    default: as without the zone\n");
     CHECK(describe("material.bed.mu").find("coulomb, voellmy, manning, bingham, viscous") != std::string::npos);
     CHECK_THROWS_WITH(case_with("law = \"viscous\"\nmu = 0.1\ndrag_rate = -1\n"),
                       Catch::Contains("material.bed.drag_rate: found -1; expected a number above 0 [1/s]"));

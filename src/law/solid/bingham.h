@@ -10,7 +10,14 @@ namespace frana::solid {
 /// rests.
 struct Bingham {
     static constexpr const char* name = "bingham";
-    static constexpr const char* keys[] = {"viscosity", "yield_stress", "shear_modulus", "sound_speed"};
+    static std::vector<Key> keys() {
+        return {solid::viscosity(), solid::yield_stress(), shear_modulus(), solid::sound_speed()};
+    }
+    static Bingham of(const Values& value) {
+        const double yield_stress = value("yield_stress").value_or(0.0);
+        return {0.0, value("shear_modulus").value_or(kStiff * yield_stress), value("viscosity").value_or(0.0),
+                yield_stress};
+    }
     static constexpr int kStates = 6;  ///< deviatoric stress [Pa]
     static constexpr bool kAverages = true;
     double bulk = 1.0;          ///< K [Pa]

@@ -1,6 +1,7 @@
 #pragma once
 #include <cmath>
 
+#include "base/constants.h"
 #include "law/solid/elastic.h"
 
 namespace frana::solid {
@@ -16,7 +17,25 @@ enum class Cone { compression, plane_strain };
 /// (Tampubolon et al. 2017, sec. 4.3.4).
 struct DruckerPrager {
     static constexpr const char* name = "drucker_prager";
-    static constexpr const char* keys[] = {"friction_angle_deg", "cohesion", "cone", "young_modulus", "poisson_ratio"};
+    static std::vector<Key> keys() {
+        return {{"friction_angle_deg", "degree", {0.0, 90.0, false, true}, "internal friction angle of drucker_prager"},
+                {"cohesion", "Pa", ranges::not_negative, "cohesion of drucker_prager", Missing::usual, 0.0},
+                {"cone",
+                 "",
+                 {},
+                 "where drucker_prager is as strong as Mohr and Coulomb's law of that angle: in triaxial compression, "
+                 "or in plane strain, as heaps and slopes fail",
+                 Missing::usual,
+                 0.0,
+                 "",
+                 {"triaxial", "plane_strain"}},
+                young_modulus(),
+                poisson_ratio()};
+    }
+    static DruckerPrager of(const Values& value) {
+        return of(Elastic::of(value), *value("friction_angle_deg") * constants::kDegree, *value("cohesion"),
+                  *value("cone") > 0.0 ? Cone::plane_strain : Cone::compression);
+    }
     static constexpr int kStates = 7;  ///< logarithmic elastic strain; volume gained at the apex, ln J [1]
     static constexpr bool kAverages = false;
     /// Volume over that without stress of points that have parted: twice as far apart in each direction. What flies

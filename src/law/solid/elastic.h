@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "law/solid/deformation.h"
+#include "law/solid/key.h"
 
 namespace frana::solid {
 
@@ -9,7 +10,8 @@ namespace frana::solid {
 /// lambda tr(e) I. Agrees with the linear theory for small strain, and stays objective for any rotation.
 struct Elastic {
     static constexpr const char* name = "elastic";
-    static constexpr const char* keys[] = {"young_modulus", "poisson_ratio"};
+    static std::vector<Key> keys() { return {young_modulus(), poisson_ratio()}; }
+    static Elastic of(const Values& value) { return of(*value("young_modulus"), *value("poisson_ratio")); }
     static constexpr int kStates = 6;  ///< logarithmic strain [1]
     static constexpr bool kAverages = false;
     double lambda = 1.0, shear = 1.0;  ///< Lame's constants [Pa]

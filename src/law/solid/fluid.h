@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "law/solid/deformation.h"
+#include "law/solid/key.h"
 
 namespace frana::solid {
 
@@ -9,7 +10,8 @@ namespace frana::solid {
 /// viscosity.
 struct Fluid {
     static constexpr const char* name = "fluid";
-    static constexpr const char* keys[] = {"viscosity", "sound_speed"};
+    static std::vector<Key> keys() { return {solid::viscosity(), solid::sound_speed()}; }
+    static Fluid of(const Values& value) { return {0.0, value("viscosity").value_or(0.0)}; }
     static constexpr int kStates = 0;
     static constexpr bool kAverages = true;
     double bulk = 1.0;       ///< K [Pa]

@@ -9,7 +9,19 @@ namespace frana::solid {
 /// K rate^n: mud thins with shear, n < 1. In pure shear of rate gamma: tau = tau_Y + K gamma^n.
 struct HerschelBulkley {
     static constexpr const char* name = "herschel_bulkley";
-    static constexpr const char* keys[] = {"consistency", "exponent", "yield_stress", "shear_modulus", "sound_speed"};
+    static std::vector<Key> keys() {
+        return {
+            {"consistency", "Pa s^n", ranges::positive, "K of herschel_bulkley: tau = yield_stress + K rate^exponent"},
+            {"exponent", "1", ranges::above_to(0.0, 2.0), "n of herschel_bulkley, below one for what thins with shear"},
+            solid::yield_stress(),
+            shear_modulus(),
+            solid::sound_speed()};
+    }
+    static HerschelBulkley of(const Values& value) {
+        const double yield_stress = value("yield_stress").value_or(0.0);
+        return {0.0, value("shear_modulus").value_or(kStiff * yield_stress), *value("consistency"), *value("exponent"),
+                yield_stress};
+    }
     static constexpr int kStates = 6;  ///< deviatoric stress [Pa]
     static constexpr bool kAverages = true;
     double bulk = 1.0;          ///< [Pa]

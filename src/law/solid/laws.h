@@ -3,7 +3,11 @@
 // A law is the stress of a point from its own numbers, and how these change with the deformation. It is a struct of
 // parameters with
 //
-//   name, keys   its word in a case, and the keys of [[stage]] that it has
+//   name         its word in a case
+//
+//   keys()       the keys of [[stage]] that it has, with unit, range, meaning, and the meaning of its absence (key.h)
+//
+//   of()         the law that has these values of its keys
 //
 //   kStates      numbers that a point stores for it
 //
@@ -37,10 +41,17 @@ namespace solid {
 
 /// Words of the laws, in the order of the list.
 std::vector<std::string> words();
-/// Words of those that have a key of [[stage]].
-std::vector<std::string> words_with(const std::string& key);
-/// All keys of laws, each once.
-std::vector<std::string> all_keys();
+/// A key as all laws of the list have it.
+struct SharedKey {
+    Key key;
+    std::vector<std::string> used_by, needed_by;  ///< words of the laws
+};
+/// In the order in which the laws name them.
+std::vector<SharedKey> shared_keys();
+/// Whether the law of that word has a key.
+bool has_key(const std::string& word, const std::string& key);
+/// The law of that word. Its bulk modulus is still to be set where its keys do not give one.
+SolidLaw make(const std::string& word, const Values& value);
 
 }  // namespace solid
 }  // namespace frana

@@ -3,8 +3,12 @@
 #include <cmath>
 
 #include "law/solid/deformation.h"
+#include "law/solid/key.h"
 
 namespace frana::solid {
+
+/// Shear modulus of yield-stress fluids where none is given, in yield stresses. Stiffer ones cost steps and change nothing.
+constexpr double kStiff = 100.0;
 
 /// Cauchy stress times J: the pressure, never tension, and the deviatoric stress that a point stores.
 template <class Real>
