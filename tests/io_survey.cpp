@@ -221,6 +221,21 @@ TEST_CASE("The line that a refusal gives makes the survey readable", "[survey]")
     CHECK(area_of(rings_of(read(files / "nowhere_crs.tif", wkt_of("EPSG:32632"), log))) == Approx(7900).epsilon(1e-12));
 }
 
+TEST_CASE("Scores have digits down to a tenth of a cell, and areas differ by one number everywhere", "[survey]") {
+    Comparison c;
+    c.cell = 0.002;
+    c.trace.runout = 0.31236, c.surveyed_runout = 0.3;
+    c.trace.areas.hit = 80.0, c.trace.areas.missed = 20.0;
+    CHECK(contains(comparison_section(c), "| runout, simulated [m] | 0.3124 |"));
+    CHECK(contains(comparison_section(c), "| runout difference [m] | +0.0124 |"));
+    CHECK(contains(comparison_line(c), "runout +0.012 m"));
+    CHECK(contains(comparison_section(c), "| area difference [%] | 20.0 |"));
+    CHECK(contains(comparison_json(c), "\"area_difference_percent\": 20.0,"));
+    c.cell = 2.5;
+    CHECK(contains(comparison_section(c), "| runout, simulated [m] | 0.3 |"));
+    CHECK(contains(comparison_line(c), "runout +0 m"));
+}
+
 TEST_CASE("A surveyed deposit conserves its volume beyond the terrain, on the run's pixels", "[survey]") {
     const Files files;
     RasterSpec spec;

@@ -107,3 +107,20 @@ TEST_CASE("A run with zones that stops goes on with the same bits, but not with 
          {"history.csv", "rasters/final_depth.tif", "rasters/mu.tif", "rasters/rheology_viscosity.tif"})
         CHECK(text_of(fs::path(whole) / name) == text_of(fs::path(half) / name));
 }
+
+TEST_CASE("What a raster of depths holds beyond the terrain is said, all of it", "[program]") {
+    const PlaneCase plane;  // x from 0 to 150 m, y from 0 to 100 m; outer nodes 2.5 m farther in
+    std::ostringstream depth;
+    depth << "ncols 10\nnrows 2\nxllcorner 100\nyllcorner 40\ncellsize 10\nNODATA_value -9999\n";
+    for (int row = 0; row < 2; ++row) depth << "2 2 2 2 2 2 2 2 2 0\n";
+    write_text(plane.folder() / "depth.asc", depth.str());
+    write_text(plane.file(), "[terrain]\ndem = \"dem.asc\"\n[[release]]\ndepth = \"depth.asc\"\n[time]\nend = 2\n");
+    const Outcome check = plane.frana("check CASE");
+    // Of 3600 m3, those west of x = 147.5 m are taken.
+    CHECK_THAT(check.out + check.err, Contains("1700 m3 (47.2 % of it) lie beyond the outer nodes"));
+    write_text(
+        plane.file(),
+        "[terrain]\ndem = \"dem.asc\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 1\n[time]\nend = 2\n");
+    const Outcome inside = plane.frana("check CASE");
+    CHECK_THAT(inside.out + inside.err, !Contains("beyond the outer nodes"));
+}

@@ -107,6 +107,17 @@ TEST_CASE("A top below all ground of its outline is told, wherever the corners a
     CHECK_FALSE(says(scene_of(with_houses("top = 140\n"), gis), buried));
 }
 
+TEST_CASE("A dam whose top lies below all ground along its line is told", "[scene][barriers]") {
+    const FakeGis gis = slope_gis();
+    const auto dam = [](const char* top) {
+        const std::string text = with_houses("");
+        return text.substr(0, text.find("[[barrier]]")) +
+               "[[barrier]]\nname = \"dam\"\nline = [[1100, 2010], [1100, 2130]]\ntop = " + top + "\n";
+    };
+    CHECK(says(scene_of(dam("149"), gis), "nothing meets it"));  // the ground is 150 m all along
+    CHECK_FALSE(says(scene_of(dam("151"), gis), "nothing meets it"));
+}
+
 TEST_CASE("Houses beyond the terrain are left out with a remark, the others keep their numbers", "[scene][barriers]") {
     FakeGis gis = slope_gis();
     gis.polygons["houses.gpkg"] = village(3, 12, 17);

@@ -90,6 +90,95 @@ TEST_CASE("The farthest point of an outline counts along a path, also round a be
     CHECK(std::isnan(reach_along(bend, {}, 1.0)));
 }
 
+TEST_CASE("Beyond the end of a path only what lies in front of it counts") {
+    const Polyline bend = {{0, 0}, {100, 0}, {100, 100}};
+    const auto place = [&](double x, double y) { return place_along(bend, {x, y}).place; };
+    CHECK(place(110, 140) == Approx(240));
+    CHECK(place(139, 140) == Approx(240));  // not yet 45 degrees off
+    CHECK(place(141, 140) == Approx(200));
+    CHECK(place_along(bend, {141, 140}).off_end);
+    CHECK_FALSE(place_along(bend, {110, 140}).off_end);
+    // A path that comes back at its end: its last segment's extension runs over the first ones.
+    const Polyline hook = {{0, 0}, {300, 0}, {300, 100}, {290, 100}};
+    CHECK(place_along(hook, {50, 40}).place == Approx(50));
+    CHECK(place_along(hook, {280, 95}).place == Approx(420));
+    const FrontAlong front = front_along(bend, box(100, 100, 300, 140).rings, 1.0);
+    CHECK(front.place == Approx(240));
+    CHECK(turns_off(front, 50.0));
+    CHECK_THAT(remark_on_turn(front, 50.0), Catch::Contains("lies up to 204 m aside of that end"));  // 200 and 40 m
+    CHECK(remark_on_turn(front_along(bend, box(50, -20, 120, 140).rings, 1.0), 50.0).empty());
+}
+
+TEST_CASE("The steepest path ends where it meets the edge of the terrain, but passes by a hole in it", "[nan]") {
+    // falls to the north-west everywhere; along the northern edge it would go on to the west
+    Raster bed = made([](double x, double y) { return 1000.0 + 0.4 * x - 0.5 * y; });
+    const Polyline path = steepest_path(bed, {505, 55});
+    CHECK(path.back().y() == Approx(195));
+    CHECK(path.back().x() == Approx(505 - 140));
+    CHECK(length_of(path) == Approx(140 * std::sqrt(2.0)));
+    for (const double x : {445.0, 455.0, 465.0}) bed.at(static_cast<Index>(x / cell), 13) = Raster::nodata;  // y = 135
+    CHECK(steepest_path(bed, {505, 55}).back().y() == Approx(195));
+    // nodata that reaches the grid's edge is not of the terrain
+    for (Index j = 10; j < 20; ++j)
+        for (Index i = 0; i < 60; ++i) bed.at(i, j) = Raster::nodata;
+    const Polyline shorter = steepest_path(bed, {505, 55});
+    CHECK(shorter.back().y() == Approx(95));
+    CHECK(shorter.back().x() == Approx(505 - 40));
+    // one that starts on the edge leaves it first
+    CHECK(steepest_path(made([](double x, double y) { return x + y; }), {595, 105}).back().y() == Approx(5));
+}
+
+TEST_CASE("Releases in different valleys have a runout each, those on one slope have one", "[compare]") {
+    // two valleys down along x, at y = 55 and y = 145 m, with a ridge of 27 m between; flows of 30 m width in each
+    const auto sides = [](double y) { return 0.6 * std::min(std::abs(y - 55.0), std::abs(y - 145.0)); };
+    const auto covered = [](double x, double y) {
+        return within(x, y, 50, 40, 250, 70) || within(x, y, 50, 130, 450, 160);
+    };
+    ComparedFlow flow(300);
+    flow.bed = made([&](double x, double y) { return 300.0 - 0.5 * x + sides(y); });
+    flow.peak = made([&](double x, double y) { return covered(x, y) ? 2.0 : 0.0; });
+    flow.last = flow.peak;
+    flow.arrival = made([&](double x, double y) {
+        const bool there = within(x, y, 50, 40, 110, 70) || within(x, y, 50, 130, 100, 160);
+        return there ? 0.0 : covered(x, y) ? x / 20.0 : Raster::nodata;
+    });
+    Survey survey;
+    survey.footprint = {{box(50, 40, 280, 70), box(50, 130, 400, 160)}, "", "survey.geojson"};
+    const Comparison c = compare(flow.run(), survey);
+    const Vec2 start = c.path.front();
+    CHECK(start.y() == Approx(65));  // of the larger one, nearest to the middle of all, a node off the bottom
+    const auto from_start = [&](double x) { return Approx(x - start.x()).margin(cell * (std::sqrt(2.0) - 1.0)); };
+    CHECK(c.trace.runout == from_start(250));
+    CHECK(c.final->runout == from_start(250));
+    CHECK(c.surveyed_runout == from_start(280));
+    REQUIRE(c.others.size() == 1);
+    CHECK(c.others[0].path.front().y() == Approx(145));
+    CHECK(c.others[0].simulated == Approx(450 - c.others[0].path.front().x()));
+    CHECK(c.others[0].surveyed == Approx(400 - c.others[0].path.front().x()));
+    REQUIRE(c.remarks.size() == 1);
+    CHECK_THAT(c.remarks[0], Catch::Contains("the releases lie in different valleys: the runout is that from"));
+
+    flow.bed = made([&](double x, double) { return 300.0 - 0.5 * x; });  // no ridge: one flow in two parts
+    const Comparison slope = compare(flow.run(), survey);
+    CHECK(slope.others.empty());
+    CHECK(slope.trace.runout == Approx(450 - start.x()));
+    // valleys that join before the fronts
+    flow.bed = made([&](double x, double y) { return 300.0 - 0.5 * x + (x < 200.0 ? sides(y) : std::abs(y - 55.0)); });
+    CHECK(compare(flow.run(), survey).others.empty());
+}
+
+TEST_CASE("A flow that turns off at the end of the path is told so", "[compare]") {
+    ComparedFlow flow(300);
+    Survey survey;
+    survey.footprint = {{box(50, 50, 300, 150)}, "", "survey.geojson"};
+    survey.path = Polyline{{60, 100}, {150, 100}, {150, 95}};  // ends on the flow, with a bend to the south
+    const Comparison c = compare(flow.run(), survey);
+    CHECK(c.trace.runout <= 95.0 + 45.0 + 1e-9);
+    REQUIRE_FALSE(c.remarks.empty());
+    CHECK_THAT(c.remarks.back(),
+               Catch::Contains("so the runout of the survey ends with the path; give the whole track"));
+}
+
 TEST_CASE("A flow that runs 50 m too far is told so, and both of its extents are scored") {
     const ComparedFlow flow(350);
     Survey survey;

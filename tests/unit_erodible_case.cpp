@@ -117,9 +117,16 @@ TEST_CASE("Loose ground that seems to be a mistake, or lies outside, is a remark
     const Scene scene = scene_of(gis, "law = \"jump\"\ndepth = 60\noutline = \"half.geojson\"\n");
     std::string all;
     for (const std::string& remark : scene.log) all += remark + "\n";
-    CHECK(has(all, "62.5 % of its area lie outside of the terrain"));  // which ends at its outer nodes
+    CHECK(has(all, "50 % of its area lie outside of the terrain"));  // which ends with its outer pixels
     CHECK(has(all, "up to 60 m deep; is that a depth, and in metres?"));
     CHECK(has(all, "up to 12000 m3 of loose material can be taken up"));
+}
+
+TEST_CASE("An outline round all pixels of the terrain leaves none of it", "[erosion][scene]") {
+    FakeGis gis = slope_gis();
+    gis.polygons["all.geojson"] = rectangle(1000, 2000, 1200, 2150);  // pixels; outer nodes lie 2.5 m farther in
+    for (const std::string& remark : scene_of(gis, "law = \"jump\"\ndepth = 1\noutline = \"all.geojson\"\n").log)
+        CHECK_FALSE(has(remark, "outside of the terrain"));
 }
 
 TEST_CASE("A release that is cut out of the ground uncovers loose material, which it takes down to the rock",

@@ -43,6 +43,12 @@ TEST_CASE("On open ground a flow is expected to be as wide as its release", "[wi
     CHECK(found.width == Approx(100.0).epsilon(1e-9));
 }
 
+TEST_CASE("A point stands for its material, not for a patch of the lattice that is mostly empty", "[width]") {
+    Seeds one = slab(5, 5);
+    one.size = {80.0};  // of which 25 m2 have material
+    CHECK(expected_width(valley([](double) { return 0.0; }), one, 0.0).release == Approx(5.0).epsilon(1e-9));
+}
+
 TEST_CASE("In a valley it is as wide as what the release's section fills", "[width]") {
     // Sides of 1 in 2: a section of 2 m x 100 m is w^2 / 8.
     const ExpectedWidth wedge = expected_width(valley([](double y) { return 0.5 * std::abs(y); }), slab(60, 100), 0.0);

@@ -127,6 +127,7 @@ TEST_CASE("Fewer than 100 particles are remarked upon", "[scene][remarks]") {
     };
     CHECK(remark(of(99), slope(0.5), "particles in all").find("found 99 particles in all; expected 100 or more") !=
           std::string::npos);
+    CHECK(remark(of(99), slope(0.5), "particles in all").find("particles.count") != std::string::npos);
     CHECK(remarks(of(100), slope(0.5), "particles in all").empty());
 }
 
@@ -207,6 +208,25 @@ TEST_CASE("A section beyond the outermost nodes of an open terrain is remarked u
         CHECK(remarks(with(fit), slope(0.5), "outermost nodes").empty());
     CHECK(remarks(with("[[1002, 2010], [1002, 2130]]", "[boundary]\nsides = \"wall\"\n"), slope(0.5), "outermost nodes")
               .empty());
+}
+
+TEST_CASE("A profile that leaves the terrain is remarked upon", "[scene][remarks]") {
+    const auto with = [](const std::string& line) {
+        return case_of(coulomb + "bed.mu = 0.4", "2.0", "[[profile]]\nname = \"axis\"\nline = " + line + "\n");
+    };
+    CHECK(remark(with("[[1100, 2010], [1300, 2010]]"), slope(0.5), "profile axis")
+              .find("found corners of its line beyond the terrain") != std::string::npos);
+    CHECK(remarks(with("[[1100, 2010], [1190, 2010]]"), slope(0.5), "profile axis").empty());
+}
+
+TEST_CASE("A case without a source names all kinds of them", "[scene]") {
+    try {
+        CaseFile::parse("[terrain]\ndem = \"dem.tif\"\n[time]\nend = 20\n", "slide/case.toml");
+        FAIL("is taken");
+    } catch (const UserError& error) {
+        CHECK_THAT(error.what(),
+                   Catch::Contains("expected at least one [[release]] or [[inflow]], or free water with water.level"));
+    }
 }
 
 TEST_CASE("Every remark of the table is in the manual of the commands", "[scene][remarks]") {

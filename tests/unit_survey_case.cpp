@@ -67,6 +67,17 @@ TEST_CASE("A change of the bed that cannot be compared is refused before the run
     CHECK(has(problem_of(loose + footprint + "bed_change_noise = -1\n"), "survey.bed_change_noise"));
 }
 
+TEST_CASE("Elevations are no deposit", "[scene]") {
+    FakeGis gis = surveyed_gis();
+    gis.rasters["deposit.tif"] = sampled({8, 6, 1002.5, 2002.5, 5.0}, [](double, double) { return 1.5; });
+    const CaseFile file = case_of("[survey]\nfootprint = \"footprint.geojson\"\ndeposit = \"deposit.tif\"\n");
+    CHECK_NOTHROW(build_scene(file, gis));
+    for (double& value : gis.rasters["deposit.tif"].values) value = 2900.0;
+    CHECK(has(only_problem([&] { build_scene(file, gis); }),
+              "deposit.tif: found thicknesses of up to 2900 m, on 100 % of the pixels more than 100 m; expected the "
+              "thickness of the deposit, not elevations; subtract the ground below it"));
+}
+
 TEST_CASE("Elevations are no change of the bed; a change of more than 100 m is a remark", "[scene][bed_change]") {
     FakeGis gis = surveyed_gis();
     const CaseFile file = case_of(loose + "[survey]\nfootprint = \"footprint.geojson\"\nbed_change = \"dod.tif\"\n");

@@ -15,16 +15,6 @@ void add(BedVolumes& volumes, double volume) {
 
 double beyond(double change, double noise) { return std::abs(change) > noise ? change : 0.0; }
 
-/// The point of a path at a distance along it; its end beyond that.
-Vec2 point_at(const Polyline& path, double distance) {
-    for (std::size_t k = 0; k + 1 < path.size(); ++k) {
-        const double length = (path[k + 1] - path[k]).norm();
-        if (length > 0.0 && distance <= length) return path[k] + distance / length * (path[k + 1] - path[k]);
-        distance -= length;
-    }
-    return path.back();
-}
-
 }  // namespace
 
 Raster surface_change(const Raster& bed_change, const Raster* lying, const Raster* arrival_time, const Raster* later) {
@@ -74,14 +64,14 @@ std::vector<BedChangeStep> bed_change_along(const Polyline& path, const Raster& 
     std::vector<BedChangeStep> steps(static_cast<std::size_t>(count));
     for (std::size_t k = 0; k < steps.size(); ++k) {
         steps[k].distance = (static_cast<double>(k) + 0.5) * step;
-        steps[k].point = point_at(path, steps[k].distance);
+        steps[k].point = point_along(path, steps[k].distance);
     }
     for_each_pair(simulated, surveyed, [&](Index i, Index j, double ours, double theirs) {
         if (std::isnan(ours) || std::isnan(theirs)) return;
         const double a = beyond(ours, noise), b = beyond(theirs, noise);
         if (a == 0.0 && b == 0.0) return;
-        const double place =
-            std::clamp(place_along(path, {surveyed.geometry.x(i), surveyed.geometry.y(j)}) / step, 0.0, count - 1.0);
+        const double along = place_along(path, {surveyed.geometry.x(i), surveyed.geometry.y(j)}).place;
+        const double place = std::clamp(along / step, 0.0, count - 1.0);
         BedChangeStep& here = steps[static_cast<std::size_t>(place)];
         add(here.simulated, pixel * a);
         add(here.surveyed, pixel * b);

@@ -43,10 +43,17 @@ private:
         const bool buried = lying_ && run_.deposited_depth;
         const Raster ever = buried ? deepest_cover(*run_.peak_depth, *lying_) : *run_.peak_depth;
         result_.outline = pixel_outline(ever, run_.limit);
+        paths_ = {result_.path};
+        if (released_at_) find_other_valleys(*released_at_, ever);
         result_.trace = scores(ever, result_.outline);
         if (lying_) result_.final = scores(*lying_, pixel_outline(*lying_, run_.limit));
         if (!result_.path.empty()) {
-            result_.surveyed_runout = reach_along(result_.path, rings_, result_.cell);
+            const std::vector<FrontAlong> surveyed = fronts_along(paths_, rings_, result_.cell),
+                                          simulated = fronts_along(paths_, result_.outline, result_.cell);
+            surveyed_front_ = surveyed.front(), simulated_front_ = simulated.front();
+            for (std::size_t n = 1; n < paths_.size(); ++n)
+                result_.others.push_back({paths_[n], simulated[n].place, surveyed[n].place});
+            result_.surveyed_runout = surveyed_front_.place;
             result_.surveyed_reach = farthest_from(result_.path.front(), rings_);
         }
         if (survey_.deposit && lying_) result_.deposit = deposit_errors(*lying_, *survey_.deposit, run_.limit);
@@ -69,15 +76,32 @@ private:
             const std::optional<Vec2> release = release_middle(*run_.arrival_time),
                                       start = release ? release : run_.start;
             if (start) result_.path = steepest_path(*run_.bed, *start);
+            released_at_ = release;
             if (length_of(result_.path) > 0.0)
                 result_.path_source =
                     fmt::format("steepest path from {}", release ? "the release" : "where material comes in");
             else
-                result_.path.clear();
+                result_.path.clear(), released_at_.reset();
         }
         if (result_.path.empty())
             remark("no steepest path from the start of the flow is known, so no {}; give one with --path",
                    result_.extents ? "runout" : "volumes along it");
+    }
+
+    /// Releases whose paths do not meet the first one before the front, and have a ridge between: a runout each.
+    void find_other_valleys(const Vec2& first, const Raster& ever) {
+        constexpr std::size_t most = 8;
+        std::vector<Polyline> all{result_.path};
+        for (const Vec2& middle : release_middles(*run_.arrival_time, first, most))
+            if (Polyline path = steepest_path(*run_.bed, middle); length_of(path) > 0.0) all.push_back(std::move(path));
+        if (all.size() == 1) return;
+        const std::vector<FrontAlong> fronts = fronts_along(all, result_.outline, result_.cell);
+        for (std::size_t n = 1; n < all.size(); ++n) {
+            if (std::isnan(fronts[n].place)) continue;
+            const Vec2 front = point_along(all[n], fronts[n].place),
+                       nearby = point_along(result_.path, place_along(result_.path, front).place);
+            if (ridge_between(*run_.bed, ever, run_.limit, front, nearby)) paths_.push_back(all[n]);
+        }
     }
 
     /// NaN where there is no terrain.
@@ -94,7 +118,7 @@ private:
         scores.areas = overlap(depth, run_.limit, rings_);
         scores.boundary = distance_between(outline, rings_, step_);
         if (!result_.path.empty()) {
-            scores.runout = reach_along(result_.path, outline, result_.cell);
+            scores.runout = fronts_along(paths_, outline, result_.cell).front().place;
             scores.reach = farthest_from(result_.path.front(), outline);
         }
         return scores;
@@ -135,7 +159,8 @@ private:
         constexpr double round_off = 1e-9;
         const std::string end = remark_on_end(length, farthest, round_off * length);
         if (!end.empty()) result_.remarks.push_back(end);
-        doubt_path();
+        tell_other_valleys();
+        if (!doubt_path()) doubt_end();
         if (!result_.deposit) return;
         const DepositErrors& deposit = *result_.deposit;
         if (deposit.unsurveyed_volume > 0.0)
@@ -148,22 +173,52 @@ private:
                    result_.deposit_source);
     }
 
-    /// A flow that runs up an opposite slope or over a dam leaves the path that water would take.
-    void doubt_path() {
-        if (survey_.path || result_.path.empty()) return;
-        const double along = result_.trace.runout - result_.surveyed_runout;
-        const double straight = result_.trace.reach - result_.surveyed_reach;
-        constexpr double noticeable = 5.0;  // cells; outlines of pixels are good to one
-        if (std::abs(along - straight) > noticeable * result_.cell)
-            remark(
-                "the steepest path may turn away from the fronts: they differ by {:+.4g} m along it, but by {:+.4g} "
-                "m straight from the release; give the track of the flow with --path",
-                along, straight);
+    /// Beside the end of the path nothing tells how far a flow runs.
+    void doubt_end() {
+        if (result_.path.empty()) return;
+        const bool survey = turns_off(surveyed_front_, noticeable * result_.cell);
+        const std::string turn = remark_on_turn(survey ? surveyed_front_ : simulated_front_, noticeable * result_.cell);
+        if (!turn.empty())
+            remark("{}, so the runout {} ends with the path; give the whole track of the flow with --path", turn,
+                   survey ? "of the survey" : "that was simulated");
     }
 
+    void tell_other_valleys() {
+        if (result_.others.empty()) return;
+        std::string runouts;
+        const auto metres = [](double length) { return std::isnan(length) ? "-" : fmt::format("{:.4g} m", length); };
+        for (const OtherRunout& other : result_.others)
+            runouts +=
+                fmt::format("{}{} / {} from {:.10g}, {:.10g}", runouts.empty() ? "" : "; ", metres(other.simulated),
+                            metres(other.surveyed), other.path.front().x(), other.path.front().y());
+        remark(
+            "the releases lie in different valleys: the runout is that from {:.10g}, {:.10g} alone, and each point of "
+            "an "
+            "outline counts for the path that is nearest; along the steepest paths of the other releases, simulated / "
+            "surveyed: {}",
+            result_.path.front().x(), result_.path.front().y(), runouts);
+    }
+
+    /// A flow that runs up an opposite slope or over a dam leaves the path that water would take.
+    bool doubt_path() {
+        if (survey_.path || result_.path.empty() || !result_.others.empty()) return false;
+        const double along = result_.trace.runout - result_.surveyed_runout;
+        const double straight = result_.trace.reach - result_.surveyed_reach;
+        if (!(std::abs(along - straight) > noticeable * result_.cell)) return false;
+        remark(
+            "the steepest path may turn away from the fronts: they differ by {:+.4g} m along it, but by {:+.4g} "
+            "m straight from the release; give the track of the flow with --path",
+            along, straight);
+        return true;
+    }
+
+    static constexpr double noticeable = 5.0;  ///< cells; outlines of pixels are good to one
     const SimulatedRun& run_;
     const Survey& survey_;
     Rings rings_;
+    std::optional<Vec2> released_at_;  ///< where the path starts, if it is the steepest one of a release
+    std::vector<Polyline> paths_;      ///< the path, then those of releases in other valleys
+    FrontAlong surveyed_front_, simulated_front_;
     double step_ = 1.0;
     Comparison result_;
     std::optional<Raster> lying_;  ///< at the end, also what has become bed [m]

@@ -44,6 +44,12 @@ struct ExtentScores {
     double reach = Raster::nodata;   ///< straight from the path's start to the farthest point of the extent [m]
 };
 
+/// Runout of a release in a valley of its own, along the steepest path from there.
+struct OtherRunout {
+    Polyline path;
+    double simulated = Raster::nodata, surveyed = Raster::nodata;  ///< NaN: nothing of that is nearest to this path [m]
+};
+
 struct Comparison {
     std::string survey, path_source, deposit_source, bed_change_source;
     double limit = 0.1;
@@ -52,6 +58,7 @@ struct Comparison {
     ExtentScores trace;                 ///< everything ever covered, as Fois et al. (2024), section 4.3
     std::optional<ExtentScores> final;  ///< what is covered at the end
     Polyline path;                      ///< empty: none
+    std::vector<OtherRunout> others;    ///< of releases in other valleys; what is nearest to them is not on the path
     double surveyed_runout = Raster::nodata, surveyed_reach = Raster::nodata;
     std::optional<DepositErrors> deposit;
     std::optional<BedChangeErrors> bed_change;

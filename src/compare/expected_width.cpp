@@ -36,8 +36,9 @@ struct Rectangle {
         double sum = 0.0;
         for (std::size_t p = 0; p < release.x.size(); ++p) {
             const double off = (Vec2(release.x[p], release.y[p]) - middle).dot(direction);
-            // A point stands for a patch of its own.
-            sum += release.volume[p] * (off * off + release.size[p] * release.size[p] / 12.0);
+            // A point stands for the material of its own patch, which may fill little of it.
+            const double patch = std::min(release.size[p] * release.size[p], release.volume[p] / release.depth[p]);
+            sum += release.volume[p] * (off * off + patch / 12.0);
         }
         return std::sqrt(12.0 * sum / volume);
     }

@@ -26,13 +26,21 @@ class Drainage {
 public:
     explicit Drainage(const Raster& bed) : bed_(bed) {}
 
-    /// Nodes from `start` to the edge of the terrain.
+    /// Nodes from `start` to where they meet the edge of the terrain. A way that starts on it leaves it first.
     std::vector<Index> from(Index start) {
         std::vector<Index> nodes{start};
+        bool inside = !at_outer_edge(start);
+        const auto goes_on = [&](Index node) {
+            nodes.push_back(node);
+            const bool outer = at_outer_edge(node);
+            const bool met = inside && outer;
+            inside = inside || !outer;
+            return !met;
+        };
         for (Index node = start;;) {
             const Index below = steepest(node);
             if (below != edge) {
-                nodes.push_back(node = below);
+                if (!goes_on(node = below)) return nodes;
                 continue;
             }
             if (at_edge(node)) return nodes;
@@ -40,14 +48,14 @@ public:
             const double hollow = height(node);
             do {  // every way out of a hollow ends below it or at the edge
                 node = way_out_[static_cast<std::size_t>(node)];
-                if (node == edge) return nodes;
-                nodes.push_back(node);
+                if (node == edge || !goes_on(node)) return nodes;
             } while (height(node) >= hollow);
         }
     }
 
 private:
     static constexpr Index unseen = -2, edge = -1;
+    enum : char { unknown, within, beyond };  ///< nodata: in a hole of the terrain, or around it
 
     double height(Index node) const { return bed_.values[static_cast<std::size_t>(node)]; }
 
@@ -76,6 +84,41 @@ private:
                            [&](const Neighbour& n) { return adjacent(node, n) == edge; });
     }
 
+    /// Beside the grid's edge, or nodata that reaches it. Along a hole of nodata a way may run on.
+    bool at_outer_edge(Index node) {
+        const GridGeometry& g = bed_.geometry;
+        const Index i = node % g.nx, j = node / g.nx;
+        if (i == 0 || j == 0 || i == g.nx - 1 || j == g.ny - 1) return true;
+        return std::any_of(std::begin(neighbours), std::end(neighbours), [&](const Neighbour& n) {
+            const Index other = (j + n.dj) * g.nx + i + n.di;
+            return std::isnan(height(other)) && reaches_edge(other);
+        });
+    }
+
+    /// Of a node of nodata; all those that are connected with it are then known.
+    bool reaches_edge(Index first) {
+        const GridGeometry& g = bed_.geometry;
+        if (nodata_.empty()) nodata_.assign(bed_.values.size(), unknown);
+        if (const char known = nodata_[static_cast<std::size_t>(first)]; known != unknown) return known == beyond;
+        std::vector<Index> hole{first};
+        nodata_[static_cast<std::size_t>(first)] = within;
+        bool reaches = false;
+        for (std::size_t k = 0; k < hole.size(); ++k)
+            for (const Neighbour& n : neighbours) {
+                const Index i = hole[k] % g.nx + n.di, j = hole[k] / g.nx + n.dj, other = j * g.nx + i;
+                if (i < 0 || j < 0 || i >= g.nx || j >= g.ny) {
+                    reaches = true;
+                    continue;
+                }
+                if (!std::isnan(height(other)) || nodata_[static_cast<std::size_t>(other)] != unknown) continue;
+                nodata_[static_cast<std::size_t>(other)] = within;
+                hole.push_back(other);
+            }
+        if (reaches)
+            for (const Index node : hole) nodata_[static_cast<std::size_t>(node)] = beyond;
+        return reaches;
+    }
+
     /// From the edge inwards, always on from the node with the lowest way to the edge.
     void flood() {
         way_out_.assign(bed_.values.size(), unseen);
@@ -100,6 +143,7 @@ private:
 
     const Raster& bed_;
     std::vector<Index> way_out_;
+    std::vector<char> nodata_;
 };
 
 /// Mean over `reach` nodes on either side, fewer near the ends, which stay.
@@ -113,6 +157,17 @@ Polyline smoothed(const Polyline& line, Index reach) {
         result.push_back(sum / static_cast<double>(2 * r + 1));
     }
     return result;
+}
+
+/// The node nearest to the centroid of them all.
+Vec2 middle_of(const std::vector<Index>& nodes, const GridGeometry& g) {
+    const auto place = [&](Index node) { return Vec2(g.x(node % g.nx), g.y(node / g.nx)); };
+    Vec2 sum(0, 0);
+    for (const Index node : nodes) sum += place(node);
+    const Vec2 centroid = sum / static_cast<double>(nodes.size());
+    return place(*std::min_element(nodes.begin(), nodes.end(), [&](Index a, Index b) {
+        return (place(a) - centroid).squaredNorm() < (place(b) - centroid).squaredNorm();
+    }));
 }
 
 }  // namespace
@@ -129,53 +184,108 @@ Polyline steepest_path(const Raster& bed, const Vec2& start) {
 }
 
 std::optional<Vec2> release_middle(const Raster& arrival_time) {
-    const GridGeometry& g = arrival_time.geometry;
-    std::vector<Vec2> released;
-    Vec2 sum(0, 0);
-    for (Index j = 0; j < g.ny; ++j)
-        for (Index i = 0; i < g.nx; ++i)
-            if (arrival_time.at(i, j) == 0.0) {
-                released.emplace_back(g.x(i), g.y(j));
-                sum += released.back();
-            }
+    std::vector<Index> released;
+    for (Index node = 0; node < arrival_time.geometry.size(); ++node)
+        if (arrival_time.values[static_cast<std::size_t>(node)] == 0.0) released.push_back(node);
     if (released.empty()) return std::nullopt;
-    const Vec2 centroid = sum / static_cast<double>(released.size());
-    return *std::min_element(released.begin(), released.end(), [&](const Vec2& a, const Vec2& b) {
-        return (a - centroid).squaredNorm() < (b - centroid).squaredNorm();
-    });
+    return middle_of(released, arrival_time.geometry);
 }
 
-double place_along(const Polyline& path, const Vec2& p) {
-    double best = INFINITY, place = 0.0, before = 0.0;
+std::vector<Vec2> release_middles(const Raster& arrival_time, const Vec2& but, std::size_t most) {
+    const GridGeometry& g = arrival_time.geometry;
+    std::vector<char> open(arrival_time.values.size());
+    for (std::size_t k = 0; k < open.size(); ++k) open[k] = arrival_time.values[k] == 0.0;
+    std::vector<std::vector<Index>> releases;
+    const NodeAt left_out = nearest_node(g, but);
+    for (Index first = 0; first < g.size(); ++first) {
+        if (!open[static_cast<std::size_t>(first)]) continue;
+        std::vector<Index> nodes{first};
+        open[static_cast<std::size_t>(first)] = 0;
+        bool wanted = true;
+        for (std::size_t k = 0; k < nodes.size(); ++k) {
+            wanted = wanted && nodes[k] != left_out.j * g.nx + left_out.i;
+            for (const Neighbour& n : neighbours) {
+                const NodeAt at{nodes[k] % g.nx + n.di, nodes[k] / g.nx + n.dj};
+                if (!has_node(g, at) || !open[static_cast<std::size_t>(at.j * g.nx + at.i)]) continue;
+                open[static_cast<std::size_t>(at.j * g.nx + at.i)] = 0;
+                nodes.push_back(at.j * g.nx + at.i);
+            }
+        }
+        if (wanted) releases.push_back(std::move(nodes));
+    }
+    std::stable_sort(releases.begin(), releases.end(),
+                     [](const auto& a, const auto& b) { return a.size() > b.size(); });
+    std::vector<Vec2> middles;
+    for (std::size_t k = 0; k < std::min(most, releases.size()); ++k) middles.push_back(middle_of(releases[k], g));
+    return middles;
+}
+
+bool ridge_between(const Raster& bed, const Raster& peak_depth, double limit, const Vec2& a, const Vec2& b) {
+    constexpr double steepness = 0.05;
+    const auto value = [](const Raster& raster, const Vec2& p) {
+        const NodeAt node = nearest_node(raster.geometry, p);
+        return has_node(raster.geometry, node) ? raster.at(node.i, node.j) : Raster::nodata;
+    };
+    const double distance = (b - a).norm(), parts = std::ceil(2.0 * distance / bed.geometry.cell);
+    const double ridge = std::max(value(bed, a), value(bed, b)) + steepness * distance;
+    for (double part = 1.0; part < parts; ++part) {
+        const Vec2 p = a + part / parts * (b - a);
+        if (value(bed, p) > ridge && !(value(peak_depth, p) > limit)) return true;
+    }
+    return false;
+}
+
+PlaceAlong place_along(const Polyline& path, const Vec2& p) {
+    PlaceAlong nearest;
+    double before = 0.0, ahead = 0.0, aside = 0.0;  // of the last segment's end, along it and across
     for (std::size_t k = 0; k + 1 < path.size(); ++k) {
         const Vec2 along = path[k + 1] - path[k];
         const double length = along.norm();
         if (!(length > 0.0)) continue;
-        double t = nearest_fraction(path[k], path[k + 1], p);
-        if (k + 2 == path.size()) t = std::max(t, (p - path[k]).dot(along) / (length * length));
+        const double t = nearest_fraction(path[k], path[k + 1], p);
         const double distance = (p - path[k] - t * along).norm();
-        if (distance < best) {
-            best = distance;
-            place = before + t * length;
-        }
+        if (distance < nearest.distance) nearest = {before + t * length, distance, false};
         before += length;
+        const Vec2 from_end = p - path[k + 1], direction = along / length;
+        ahead = from_end.dot(direction);
+        aside = std::abs(direction.x() * from_end.y() - direction.y() * from_end.x());
     }
-    return place;
+    if (nearest.place >= before && ahead > 0.0 && aside <= ahead)
+        nearest.place += ahead, nearest.distance = aside;
+    else
+        nearest.off_end = nearest.place + nearest.distance > before;
+    return nearest;
 }
 
-double reach_along(const Polyline& path, const Rings& outline, double step) {
-    expect(path.size() >= 2 && length_of(path) > 0.0, "a path has a length");
-    double reach = Raster::nodata;
+std::vector<FrontAlong> fronts_along(const std::vector<Polyline>& paths, const Rings& outline, double step) {
+    for (const Polyline& path : paths) expect(path.size() >= 2 && length_of(path) > 0.0, "a path has a length");
+    std::vector<FrontAlong> fronts(paths.size());
+    const auto add = [&](const Vec2& p) {
+        std::size_t nearest = 0;
+        PlaceAlong at = place_along(paths.front(), p);
+        for (std::size_t n = 1; n < paths.size(); ++n)
+            if (const PlaceAlong other = place_along(paths[n], p); other.distance < at.distance)
+                at = other, nearest = n;
+        FrontAlong& front = fronts[nearest];
+        if (!(at.place <= front.place)) front.place = at.place;
+        double& farthest = at.off_end ? front.off_end : front.off_path;
+        farthest = std::max(farthest, at.distance);
+    };
     for (const auto& ring : outline)
         for (std::size_t k = 0; k < ring.size(); ++k) {
             const Vec2 edge = ring[(k + 1) % ring.size()] - ring[k];
             const int parts = std::max(1, static_cast<int>(std::ceil(edge.norm() / step)));
-            for (int part = 0; part < parts; ++part) {
-                const double place = place_along(path, ring[k] + static_cast<double>(part) / parts * edge);
-                if (std::isnan(reach) || place > reach) reach = place;
-            }
+            for (int part = 0; part < parts; ++part) add(ring[k] + static_cast<double>(part) / parts * edge);
         }
-    return reach;
+    return fronts;
+}
+
+FrontAlong front_along(const Polyline& path, const Rings& outline, double step) {
+    return fronts_along({path}, outline, step).front();
+}
+
+double reach_along(const Polyline& path, const Rings& outline, double step) {
+    return front_along(path, outline, step).place;
 }
 
 double farthest_from(const Vec2& start, const Rings& outline) {
@@ -192,9 +302,26 @@ double length_of(const Polyline& path) {
     return length;
 }
 
+Vec2 point_along(const Polyline& path, double distance) {
+    for (std::size_t k = 0; k + 1 < path.size(); ++k) {
+        const double length = (path[k + 1] - path[k]).norm();
+        if (length > 0.0 && distance <= length) return path[k] + distance / length * (path[k + 1] - path[k]);
+        distance -= length;
+    }
+    return path.back();
+}
+
 std::string remark_on_end(double length, double farthest, double allowed) {
     if (!std::isgreater(farthest, length + allowed)) return "";  // there may be none
     return fmt::format("the path ends {:.4g} m before the farther front and goes on straight there", farthest - length);
+}
+
+bool turns_off(const FrontAlong& front, double allowed) { return front.off_end > front.off_path + allowed; }
+
+std::string remark_on_turn(const FrontAlong& front, double allowed) {
+    if (!turns_off(front, allowed)) return "";
+    return fmt::format("the path ends before the flow does, whose outline lies up to {:.4g} m aside of that end",
+                       front.off_end);
 }
 
 }  // namespace frana

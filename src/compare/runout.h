@@ -1,5 +1,6 @@
 #pragma once
 // How far an extent reaches along a path.
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -10,19 +11,47 @@ namespace frana {
 
 /// The way that water would take from a node to the edge of the terrain. It goes to the lowest of the eight neighbours
 /// by slope (O'Callaghan & Mark 1984). Out of hollows it goes over their lowest edge (priority flood, Barnes et al.
-/// 2014). It is smoothed over eleven nodes. Nodata is an edge. Empty when the start has no elevation.
+/// 2014). It ends where it meets the edge. Nodata is an edge; round a hole of it the way goes on as long as it falls. It
+/// is smoothed over eleven nodes. Empty when the start has no elevation.
 Polyline steepest_path(const Raster& bed, const Vec2& start);
 
 /// Middle of a release: the released node nearest to the centroid of all of them; nothing when there are none.
 /// Released are the nodes whose arrival time is 0.
 std::optional<Vec2> release_middle(const Raster& arrival_time);
 
-/// Place along a path of its point nearest to p [m]; the last segment goes on without end.
-double place_along(const Polyline& path, const Vec2& p);
+/// Middles, as above, of up to `most` releases, the largest first. Released nodes that touch are one release. The one
+/// that `but` lies in is left out.
+std::vector<Vec2> release_middles(const Raster& arrival_time, const Vec2& but, std::size_t most);
 
-/// The path's horizontal length up to the point of it that is nearest to the outline's farthest one [m]. It is the
-/// largest, over the outline, of the place along the path of the nearest point on it. A path that ends too early goes
-/// on straight. NaN without rings. `step` [m]: how closely the outline's edges are sampled.
+/// Whether a ridge lies between two places: ground that is higher than both by a twentieth of their distance, where the
+/// flow did not get deeper than `limit` [m]. Without elevations there is none.
+bool ridge_between(const Raster& bed, const Raster& peak_depth, double limit, const Vec2& a, const Vec2& b);
+
+/// A point's place along a path.
+struct PlaceAlong {
+    double place = 0.0;          ///< of the path's point nearest to it [m]
+    double distance = INFINITY;  ///< to that point [m]
+    bool off_end = false;        ///< not in front of the end, and farther off the path than the place is from there
+};
+
+/// The path goes on straight beyond its end, for points that lie in front of it. To them the end is the nearest point
+/// of the path, and their direction from there is at most 45 degrees off. Others beyond it count as at the end.
+PlaceAlong place_along(const Polyline& path, const Vec2& p);
+
+/// How far an outline reaches along a path.
+struct FrontAlong {
+    double place = Raster::nodata;  ///< the largest of PlaceAlong::place; NaN without rings [m]
+    double off_path = 0.0;          ///< how far the outline lies from the path, but for points beside its end [m]
+    double off_end = 0.0;           ///< how far those lie from it [m]
+};
+
+/// `step` [m]: how closely the outline's edges are sampled.
+FrontAlong front_along(const Polyline& path, const Rings& outline, double step);
+
+/// Of several paths, each by the points that are nearest to it. Those as near to several count for the first of them.
+std::vector<FrontAlong> fronts_along(const std::vector<Polyline>& paths, const Rings& outline, double step);
+
+/// The place of that front alone: the path's horizontal length up to there [m].
 double reach_along(const Polyline& path, const Rings& outline, double step);
 
 /// Straight horizontal distance from a point to the farthest one of an outline [m]; NaN without rings.
@@ -30,8 +59,18 @@ double farthest_from(const Vec2& start, const Rings& outline);
 
 double length_of(const Polyline& path);
 
+/// The point of a path at a distance along it [m]; its end beyond that.
+Vec2 point_along(const Polyline& path, double distance);
+
 /// What to say of a path of that length where a front lies beyond its end, both along it [m]. "" where none does, or
 /// by no more than `allowed`.
 std::string remark_on_end(double length, double farthest, double allowed);
+
+/// Whether a flow leaves a path sideways at its end: it lies farther from there than from the rest of the path, by more
+/// than `allowed` [m]. Then its runout is not known.
+bool turns_off(const FrontAlong& front, double allowed);
+
+/// What to say then, else "".
+std::string remark_on_turn(const FrontAlong& front, double allowed);
 
 }  // namespace frana

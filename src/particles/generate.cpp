@@ -68,11 +68,12 @@ ReleaseReport measured(const Material& material, const GridGeometry& grid, Log& 
     if (!(inside.volume > 0.0)) complain_empty(material, whole.volume, grid);
     report.volume = inside.volume;
     report.area = inside.area;
-    report.clipped_volume = std::max(0.0, whole.volume - inside.volume);
+    const double all = whole.volume + material.release().left_out;
+    report.clipped_volume = std::max(0.0, all - inside.volume);
     if (report.clipped_volume > 1e-9 * report.volume)
         log.push_back(
             fmt::format("{}: {:.6g} m3 ({:.3g} % of it) lie beyond the outer nodes of the grid and are left out",
-                        material.name(), report.clipped_volume, 100.0 * report.clipped_volume / whole.volume));
+                        material.name(), report.clipped_volume, 100.0 * report.clipped_volume / all));
     return report;
 }
 

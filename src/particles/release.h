@@ -16,6 +16,7 @@ struct Release {
     Vec2 velocity{0, 0};                ///< horizontal velocity [m/s]
     std::optional<Raster> velocity_x;   ///< replaces velocity.x() where it has data [m/s]
     std::optional<Raster> velocity_y;   ///< replaces velocity.y() where it has data [m/s]
+    double left_out = 0.0;              ///< beyond what was read of the depth field's file [m3]
     std::string name;                   ///< for messages, such as "case.toml:12: release 1"; may be empty
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "terrain/outline_nodes.h"
+#include "terrain/places.h"
 
 namespace frana {
 
@@ -28,6 +29,15 @@ BarrierBox box_around(const Barrier& barrier, double cell) {
 double lowest_ground(const Barrier& barrier, const Raster& bed) {
     double lowest = INFINITY;
     for (const Polygon& polygon : barrier.outline.parts) lowest = std::min(lowest, lowest_ground(polygon, bed));
+    for (std::size_t k = 0; k + 1 < barrier.line.size(); ++k) {
+        const Vec2 along = barrier.line[k + 1] - barrier.line[k];
+        const double parts = std::max(1.0, std::ceil(2.0 * along.norm() / bed.geometry.cell));
+        for (double part = 0.0; part <= parts; ++part) {
+            const Vec2 at = barrier.line[k] + part / parts * along;
+            if (!between_nodes(bed.geometry, at)) continue;
+            if (const double z = NodeSquare(bed.geometry, at).value(bed); z < lowest) lowest = z;
+        }
+    }
     return lowest;
 }
 

@@ -19,7 +19,7 @@ BarrierBox bounds_of(const Barrier& barrier);
 /// The same; where it is thinner than kBoxCells it is as wide, about its middle.
 BarrierBox box_around(const Barrier& barrier, double cell);
 
-/// Of all nodes that a barrier's outline stands on [m]; infinity where it has no ground.
+/// Of all nodes that a barrier's outline stands on, or along its line [m]; infinity where it has no ground.
 double lowest_ground(const Barrier& barrier, const Raster& bed);
 /// Whether the barrier's top lies no higher than all ground that it stands on: nothing meets it.
 bool is_buried(const Barrier& barrier, const Raster& bed);

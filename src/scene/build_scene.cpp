@@ -381,6 +381,11 @@ private:
             if (!comes_onto(line, terrain().pixel_extent()))
                 problems_.add(case_.place(prefix + "line"), "found no point of it on the terrain", extent_text(),
                               way_out);
+            else if (!std::all_of(line.begin(), line.end(), [&](const Vec2& corner) { return inside(corner); }))
+                scene_.log.push_back(fmt::format(
+                    "profile {}: found corners of its line beyond the terrain; expected all of it there; it "
+                    "has no values beyond",
+                    case_.word(prefix + "name")));
             scene_.profiles.push_back({case_.word(prefix + "name"), line});
         }
         for (Index i = 0; i < case_.count("gauge"); ++i) {

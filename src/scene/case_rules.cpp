@@ -95,7 +95,7 @@ void CaseReader::check_sources() {
         if (free && (case_.given(key) || misread_.count(key))) return;
     problems_.add(1, place_of("release", 1), "not given",
                   free ? "expected at least one [[release]] or [[inflow]], or water.level or water.rain"
-                       : "expected at least one [[release]]",
+                       : "expected at least one [[release]] or [[inflow]], or free water with water.level",
                   "add [[release]] with outline and depth below");
 }
 

@@ -41,8 +41,7 @@ const std::vector<RemarkRow>& remark_table() {
          "given in mm/h"},
         {Remark::few_particles, "few particles", 100.0, none,
          "found {value:.0f} particles in all; expected {low:g} or more, since fewer do not resolve a flow; give a "
-         "smaller "
-         "grid.cell or more particles.per_cell"},
+         "smaller grid.cell or more particles"},
         {Remark::depth_without_data, "depth without data", -none, 0.0,
          "found no data in {value:.0f} of {other:.0f} pixels, taken as no material; expected a depth in each; fill the "
          "gaps "

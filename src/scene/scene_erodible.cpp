@@ -63,6 +63,16 @@ std::vector<double> pixel_edges(Index count, double cell) {
     return edges;
 }
 
+/// Of an outline, on whole pixels: the outer ones reach half a cell beyond their nodes [m2].
+double area_on_pixels(const Rings& rings, const GridGeometry& g) {
+    const auto sides = [&](Index count) {
+        return std::vector<double>{-0.5 * g.cell, (static_cast<double>(count) - 0.5) * g.cell};
+    };
+    std::vector<double> area(1);
+    const auto [first, past] = OutlineArea(rings, sides(g.nx), sides(g.ny)).row(0, area);
+    return first < past ? area.front() : 0.0;
+}
+
 /// An outline that leaves the terrain, of which the scene may hold a part.
 void remark_on_outline(const CaseFile& file, const Polygons& outline, double share_inside, Scene& scene) {
     if (share_inside >= 0.999 || may_begin_beyond(outline, scene)) return;
@@ -104,7 +114,7 @@ void keep_inside(const CaseFile& file, const GisReader& reader, Scene& scene, Ra
             "found an outline that crosses itself, or a hole outside of its polygon; expected simple polygons; "
             "repair it (ogr2ogr -makevalid)");
     if (!(inside > 0.0) && !may_begin_beyond(outline, scene)) refuse_outline(rings, g);
-    remark_on_outline(file, outline, inside / all, scene);
+    remark_on_outline(file, outline, area_on_pixels(rings, g) / all, scene);
 }
 
 /// 3D points take up no bed: it is firm in their window, and around it as far as they and columns act on each other.

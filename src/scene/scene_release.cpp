@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "base/compensated_sum.h"
 #include "base/error.h"
 #include "base/layer_name.h"
 #include "scene/nodes_of_place.h"
@@ -128,6 +129,28 @@ private:
         return reader_.read_raster(path, bed_.geometry.pixel_extent(), bed_.crs_wkt, log_);
     }
 
+    /// Of a raster of depths, what lies beyond the part of it that was read [m3]. Nothing where that cannot be told.
+    double volume_beyond(const std::filesystem::path& file, const Raster& part) const {
+        constexpr double kFar = 1e9;  // [m]; farther than any coordinate of a map
+        const auto box = reader_.extent_above_zero(file, {-kFar, -kFar, kFar, kFar}, bed_.crs_wkt);
+        const auto has = part.geometry.pixel_extent();
+        const double slack = 0.5 * part.geometry.cell;
+        if (!box || ((*box)[0] > has[0] - slack && (*box)[1] > has[1] - slack && (*box)[2] < has[2] + slack &&
+                     (*box)[3] < has[3] + slack))
+            return 0.0;
+        std::vector<std::string> said_already;
+        const auto volume = [](const Raster& depths) {
+            CompensatedSum sum;
+            for (const double depth : depths.values)
+                if (depth > 0.0) sum.add(depth * depths.geometry.cell * depths.geometry.cell);
+            return sum.value();
+        };
+        const auto& [x0, y0, x1, y1] = *box;
+        const Raster whole =
+            reader_.read_raster(file, {x0 + slack, y0 + slack, x1 - slack, y1 - slack}, bed_.crs_wkt, said_already);
+        return std::max(0.0, volume(whole) - volume(part));
+    }
+
     Polygons outline() {
         std::string name = case_.path(key("outline")).string();
         if (given("layer")) name += kLayerMark + case_.word(key("layer"));
@@ -191,6 +214,7 @@ private:
         } else if (!depth_of_features_ && is_file("depth")) {
             reader_.require_metres(case_.path(key("depth")));
             release.depth_field = raster(case_.path(key("depth")));
+            if (!release.outline) release.left_out = volume_beyond(case_.path(key("depth")), *release.depth_field);
             const NodeMarks wanted = claimed(release, release.depth_field->geometry);
             remark_on_gaps(*release.depth_field, wanted, place("depth"), log_);
             judge_negative(*release.depth_field, wanted);

@@ -188,7 +188,8 @@ void remark_on_releases(const CaseFile& file, const std::vector<ReleaseSummary>&
     for (const Seeds* seeds : scene.all_particles()) count += seeds->count();
     if (count == 0 && !scene.inflows.empty()) return;  // all is still to come in
     if (scene.water && !scene.structure) return;       // which is on cells from the start
-    remark_on(scene.log, Remark::few_particles, file.place("particles.per_cell"), {double(count)});
+    const char* const key = file.given("particles.count") ? "particles.count" : "particles.per_cell";
+    remark_on(scene.log, Remark::few_particles, file.place(key), {double(count)});
 }
 
 void remark_on_gaps(const Raster& field, const NodeMarks& claimed, const std::string& place,

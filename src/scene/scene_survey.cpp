@@ -32,7 +32,7 @@ void read_survey(const CaseFile& file, const GisReader& reader, Scene& scene, Pr
     attempt("survey.path", files.path,
             [&] { read_survey_path(reader, files.path, terrain.pixel_extent(), crs, said_again_by_the_comparison); });
     attempt("survey.deposit", files.deposit,
-            [&] { reader.read_deposit(files.deposit, grid, crs, said_again_by_the_comparison); });
+            [&] { read_survey_deposit(reader, files.deposit, grid, crs, said_again_by_the_comparison); });
     attempt("survey.bed_change", files.bed_change, [&] {
         // Of a terrain that grows with the flow, where the run will be is not known yet.
         if (scene.wider)

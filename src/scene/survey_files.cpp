@@ -22,8 +22,13 @@ bool known_on(const Raster& raster, const GridGeometry& grid) {
     return false;
 }
 
-/// Elevations that were taken for their change are nearly everywhere large, changes hardly anywhere.
-void refuse_elevations(const Raster& change, std::vector<std::string>& log) {
+/// What a raster should hold, for people.
+struct Wanted {
+    const char *name, *meaning, *way_out;
+};
+
+/// Elevations that were taken for changes or depths are nearly everywhere large, those hardly anywhere.
+void refuse_elevations(const Raster& change, const Wanted& wanted, std::vector<std::string>& log) {
     constexpr double kLarge = 100.0;  // [m]; few rock avalanches left or took more
     Index known = 0, large = 0;
     double most = 0.0;
@@ -35,11 +40,11 @@ void refuse_elevations(const Raster& change, std::vector<std::string>& log) {
     }
     if (large == 0) return;
     const std::string found =
-        fmt::format("{}: found changes of up to {:.4g} m, on {:.3g} % of the pixels more than {:g} m", change.source,
-                    most, 100.0 * double(large) / double(known), kLarge);
-    const char* const wanted = "expected the elevations after the event less those before it, not elevations";
-    if (2 * large > known) throw UserError(fmt::format("{}; {}; subtract them first (gdal_calc.py)", found, wanted));
-    log.push_back(fmt::format("{}; {}; check the raster", found, wanted));
+        fmt::format("{}: found {} of up to {:.4g} m, on {:.3g} % of the pixels more than {:g} m", change.source,
+                    wanted.name, most, 100.0 * double(large) / double(known), kLarge);
+    const std::string expected = fmt::format("expected {}, not elevations", wanted.meaning);
+    if (2 * large > known) throw UserError(fmt::format("{}; {}; {}", found, expected, wanted.way_out));
+    log.push_back(fmt::format("{}; {}; check the raster", found, expected));
 }
 
 }  // namespace
@@ -79,11 +84,22 @@ Polyline read_survey_path(const GisReader& reader, const std::filesystem::path& 
     return lines.front();
 }
 
+Raster read_survey_deposit(const GisReader& reader, const std::filesystem::path& file, const GridGeometry& grid,
+                           const std::string& crs_wkt, std::vector<std::string>& log) {
+    Raster deposit = reader.read_deposit(file, grid, crs_wkt, log);
+    deposit.source = file.string();
+    refuse_elevations(
+        deposit, {"thicknesses", "the thickness of the deposit", "subtract the ground below it (gdal_calc.py)"}, log);
+    return deposit;
+}
+
 Raster read_bed_change(const GisReader& reader, const std::filesystem::path& file, const GridGeometry& grid,
                        const std::string& crs_wkt, std::vector<std::string>& log) {
     Raster change = reader.read_deposit(file, grid, crs_wkt, log);
     change.source = file.string();
-    refuse_elevations(change, log);
+    refuse_elevations(
+        change,
+        {"changes", "the elevations after the event less those before it", "subtract them first (gdal_calc.py)"}, log);
     if (known_on(change, grid)) return change;
     const auto e = grid.pixel_extent();
     throw UserError(fmt::format(

@@ -26,6 +26,10 @@ Polyline read_survey_path(const GisReader& reader, const std::filesystem::path& 
                           const std::array<double, 4>& extent, const std::string& crs_wkt,
                           std::vector<std::string>& log);
 
+/// Thickness of a surveyed deposit [m], as GisReader::read_deposit. UserError for a raster of elevations.
+Raster read_survey_deposit(const GisReader& reader, const std::filesystem::path& file, const GridGeometry& grid,
+                           const std::string& crs_wkt, std::vector<std::string>& log);
+
 /// Difference of two surveys [m] on the pixels of `grid`. It is widened to all of the raster, as for a deposit. NaN:
 /// not surveyed. UserError when no pixel of `grid` was surveyed.
 Raster read_bed_change(const GisReader& reader, const std::filesystem::path& file, const GridGeometry& grid,

@@ -55,10 +55,13 @@ RunFiles read_run(const fs::path& folder) {
     return run;
 }
 
+constexpr double noticeable = 5.0;  // cells; outlines of pixels are good to one
+
 /// The path that all runouts are measured along.
 struct Path {
     Polyline line;              ///< empty: none is known
     std::optional<Vec2> start;  ///< the release's middle
+    std::string turn;           ///< what to say of a flow that leaves it at its end
 };
 
 Path path_of(const RunFiles& finest, const Raster& bed, std::vector<std::string>& remarks) {
@@ -84,7 +87,7 @@ double volume_of(const Raster& depth) {
     return sum * depth.geometry.cell * depth.geometry.cell;
 }
 
-CellFigures figures_of(const RunFiles& run, const RunFiles& finest, const Path& path, double limit) {
+CellFigures figures_of(const RunFiles& run, const RunFiles& finest, Path& path, double limit) {
     const Raster &peak = run.raster("peak_depth"), &speed = run.raster("peak_speed");
     const Raster deposit = run.deposit();
     constexpr double nearly_all = 0.999;  // the maximum is that of a single node
@@ -93,7 +96,12 @@ CellFigures figures_of(const RunFiles& run, const RunFiles& finest, const Path& 
     CellFigures figures;
     figures.cell = peak.geometry.cell;
     figures.reach = path.start ? farthest_from(*path.start, outline) : Raster::nodata;
-    figures.runout = path.line.empty() ? figures.reach : reach_along(path.line, outline, figures.cell);
+    figures.runout = figures.reach;
+    if (!path.line.empty()) {
+        const FrontAlong front = front_along(path.line, outline, figures.cell);
+        figures.runout = front.place;
+        if (path.turn.empty()) path.turn = remark_on_turn(front, noticeable * figures.cell);
+    }
     figures.footprint_area = area_deeper(covered, limit);
     figures.deposit_area = area_deeper(deposit, limit);
     figures.deposit_volume = volume_of(deposit);
@@ -133,8 +141,8 @@ void leave_short_path(ConvergenceStudy& study, const Path& path) {
     for (const CellFigures* f : all)
         // Outlines of pixels are good to a cell.
         if (std::isgreater(f->runout, length + f->cell) && (!farthest || f->runout > farthest->runout)) farthest = f;
-    if (!farthest) return;
-    study.remarks.push_back(remark_on_end(length, farthest->runout, farthest->cell) +
+    if (!farthest && path.turn.empty()) return;
+    study.remarks.push_back((farthest ? remark_on_end(length, farthest->runout, farthest->cell) : path.turn) +
                             "; so the straight reach counts as the runout");
     study.along_path = false;
     for (CellFigures* f : all) f->runout = f->reach;
@@ -142,7 +150,6 @@ void leave_short_path(ConvergenceStudy& study, const Path& path) {
 
 /// A flow that runs up an opposite slope leaves the path that water would take.
 void remark_on_path(ConvergenceStudy& study) {
-    constexpr double noticeable = 5.0;  // cells; outlines of pixels are good to one
     const CellFigures& finest = study.figures.back();
     for (const CellFigures& f : study.figures) {
         const double along = f.runout - finest.runout, straight = f.reach - finest.reach;
@@ -160,7 +167,7 @@ void measure_runs(ConvergenceStudy& study, const Raster& bed) {
     const RunFiles finest = read_run(study.runs.back().folder);
     study.footprint_depth = finest.record["results"].at("footprint_depth").get<double>();
     study.title = finest.record.value("title", "");
-    const Path path = path_of(finest, bed, study.remarks);
+    Path path = path_of(finest, bed, study.remarks);
     bool particles = false;
     for (const StudiedRun& run : study.runs) {
         const RunFiles files = read_run(run.folder);

@@ -83,6 +83,13 @@ std::string value(double number, const char* form) {
     return std::isfinite(number) ? fmt::format(fmt::runtime(form), number) : "-";
 }
 
+/// A length with `decimals`, more where a tenth of a cell has more.
+std::string metres(double cell, int decimals) {
+    constexpr int most = 9;
+    const int of_cell = static_cast<int>(std::ceil(-std::log10(cell) - 1e-9)) + decimals;
+    return fmt::format("{{:.{}f}}", std::clamp(of_cell, decimals, most));
+}
+
 /// A row of a table. It has a column for the trace and, when it is known, one for the final state.
 template <class Score>
 std::string row(const Comparison& c, const char* name, const char* form, const Score& score) {
@@ -95,6 +102,9 @@ std::string extent_table(const Comparison& c) {
     std::string text = c.final ? "| Score | everything ever covered | covered at the end |\n|---|---|---|\n"
                                : "| Score | everything ever covered |\n|---|---|\n";
     const auto add = [&](const char* name, const char* form, const auto& score) { text += row(c, name, form, score); };
+    const std::string length = metres(c.cell, 1), difference = "{:+" + length.substr(2);
+    const auto add_length = [&](const char* name, const auto& score) { add(name, length.c_str(), score); };
+    const auto add_difference = [&](const char* name, const auto& score) { add(name, difference.c_str(), score); };
     using E = const ExtentScores&;
     add("simulated area [m2]", "{:.6g}", [](E s) { return s.areas.simulated(); });
     add("surveyed area [m2]", "{:.6g}", [](E s) { return s.areas.surveyed(); });
@@ -106,17 +116,14 @@ std::string extent_table(const Comparison& c) {
     add("recall", "{:.3f}", [](E s) { return s.areas.recall(); });
     add("F1", "{:.3f}", [](E s) { return s.areas.f1(); });
     add("simulated over surveyed area", "{:.3f}", [](E s) { return s.areas.area_ratio(); });
-    add("area difference, simulated minus surveyed [%]", "{:+.1f}", [](E s) {
-        const double difference = s.areas.simulated() - s.areas.surveyed();
-        return std::copysign(s.areas.area_difference_percent(), difference);
-    });
+    add("area difference [%]", "{:.1f}", [](E s) { return s.areas.area_difference_percent(); });
     add("symmetric difference [%]", "{:.1f}", [](E s) { return s.areas.symmetric_difference_percent(); });
-    add("runout, simulated [m]", "{:.1f}", [](E s) { return s.runout; });
-    add("runout, surveyed [m]", "{:.1f}", [&](E) { return c.surveyed_runout; });
-    add("runout difference [m]", "{:+.1f}", [&](E s) { return s.runout - c.surveyed_runout; });
-    add("straight reach, difference [m]", "{:+.1f}", [&](E s) { return s.reach - c.surveyed_reach; });
-    add("distance of the outlines, mean [m]", "{:.1f}", [](E s) { return s.boundary.mean; });
-    add("distance of the outlines, 95 % [m]", "{:.1f}", [](E s) { return s.boundary.p95; });
+    add_length("runout, simulated [m]", [](E s) { return s.runout; });
+    add_length("runout, surveyed [m]", [&](E) { return c.surveyed_runout; });
+    add_difference("runout difference [m]", [&](E s) { return s.runout - c.surveyed_runout; });
+    add_difference("straight reach, difference [m]", [&](E s) { return s.reach - c.surveyed_reach; });
+    add_length("distance of the outlines, mean [m]", [](E s) { return s.boundary.mean; });
+    add_length("distance of the outlines, 95 % [m]", [](E s) { return s.boundary.p95; });
     return text + "\n";
 }
 
@@ -203,7 +210,7 @@ Survey read_survey_files(const SurveyFiles& files, const Raster& like, std::vect
         survey.path_source = files.path.string();
     }
     if (!files.deposit.empty()) {
-        survey.deposit = reader.read_deposit(files.deposit, like.geometry, like.crs_wkt, log);
+        survey.deposit = read_survey_deposit(reader, files.deposit, like.geometry, like.crs_wkt, log);
         survey.deposit_source = files.deposit.string();
     }
     if (!files.bed_change.empty()) {
@@ -221,6 +228,11 @@ std::string comparison_json(const Comparison& c) {
     json["cell"] = c.cell;
     if (c.extents) add_scores(json, c.trace, c);
     json["runout_path"] = c.path_source;
+    for (const OtherRunout& other : c.others)
+        json["runout_other_releases"].push_back({{"x", other.path.front().x()},
+                                                 {"y", other.path.front().y()},
+                                                 {"runout_simulated", number(other.simulated)},
+                                                 {"runout_survey", number(other.surveyed)}});
     if (c.deposit) {
         json["deposit"] = c.deposit_source;
         add_deposit(json, *c.deposit);
@@ -273,7 +285,8 @@ std::string comparison_section(const Comparison& c) {
 std::string comparison_line(const Comparison& c) {
     const Overlap& areas = c.trace.areas;
     return fmt::format("IoU {}, simulated over surveyed area {}, runout {} m", value(areas.iou(), "{:.3f}"),
-                       value(areas.area_ratio(), "{:.3g}"), value(c.trace.runout - c.surveyed_runout, "{:+.0f}"));
+                       value(areas.area_ratio(), "{:.3g}"),
+                       value(c.trace.runout - c.surveyed_runout, ("{:+" + metres(c.cell, 0).substr(2)).c_str()));
 }
 
 }  // namespace frana
