@@ -12,6 +12,7 @@
 #include "observe/barriers.h"
 #include "program.h"
 #include "read_layer.h"
+#include "read_raster.h"
 #include "run/folder/barrier_hits.h"
 
 using namespace frana;
@@ -278,6 +279,38 @@ TEST_CASE("A height that a feature lacks is refused with its name", "[barriers]"
     const Village village;
     write_text(village.path() / "houses.geojson",
                collection(square(75, 32, 8, R"("h":5)") + "," + square(75, 60, 8, R"("h":null)")));
+// Below a steep face the averaged bed is raised one node farther out, so that a pile has its depth two nodes from the wall.
+TEST_CASE("The depth at a wall is that of the pile before it", "[barriers][results]") {
+    const Village village;
+    write_text(village.path() / "houses.geojson", collection(square(75, -5, 110, "")));
+    REQUIRE(call_frana(village.path(), "run case.toml --out run --quiet --set barrier.0.height=60").code == 0);
+    const Raster peak = raster_of(village.path() / "run", "peak_depth.tif");
+    double pile = 0.0;
+    for (Index j = 0; j < peak.geometry.ny; ++j)
+        for (Index i = 0; i < peak.geometry.nx; ++i)
+            if (peak.geometry.x(i) > 60.0 && peak.geometry.x(i) < 75.0) pile = std::max(pile, peak.at(i, j));
+    REQUIRE(pile > 1.0);
+    const Layer layer(village.path() / "run" / "results.gpkg", "barriers");
+    const OGRFeatureUniquePtr wall(layer.get().GetNextFeature());
+    CHECK(wall->GetFieldAsDouble("depth_west_m") == Approx(pile).epsilon(1e-6));  // rasters are in single precision
+}
+
+TEST_CASE("A force on a barrier has the time that it is the mean over, wherever it is told", "[barriers][results]") {
+    const FreshFolder folder;
+    BarrierSummary dam, none;
+    dam.name = "dam", none.name = "none";
+    dam.first_contact = 5.0, dam.peak_force = 3.16e6, dam.peak_force_time = 7.9, dam.blur = 0.2;
+    write_barrier_table(folder.path() / "barriers.csv", {dam, none}, {BarrierHit(), BarrierHit()});
+    const std::string table = text_of(folder.path() / "barriers.csv");
+    CHECK_THAT(table, Contains("peak_force [N],peak_force_mean_over [s],"));
+    CHECK_THAT(table, Contains("dam,5,3160000,0.2,") && Contains("none,,,,"));
+    RunRecord record;
+    record.density = 1000.0;
+    record.barriers = {dam, none};
+    CHECK_THAT(report_markdown(record, folder.path()),
+               Contains("| dam | 0.2 s, as in `barriers.csv` | 3.16e+06 N | 7.9 s |") && !Contains("| none | 0 s"));
+}
+
     const std::string text = text_of(village.path() / "case.toml");
     const std::string fixed = "height = 6";
     std::string by_field = text;
