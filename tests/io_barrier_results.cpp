@@ -14,6 +14,8 @@
 #include "read_layer.h"
 #include "read_raster.h"
 #include "run/folder/barrier_hits.h"
+#include "run/folder/run_folder.h"
+#include "run/folder/run_record.h"
 
 using namespace frana;
 namespace fs = std::filesystem;
@@ -108,8 +110,10 @@ TEST_CASE("The report has the time of contact of houses that columns reach, and 
     CHECK_THAT(report, Contains("| house_2 | none | - | - |") && Contains("First contact is when the depth at a face"));
     CHECK_THAT(report, !Contains("| house_1 | none") && !Contains("| house_3 | none"));
     const std::string table = text_of(village.path() / "run" / "barriers.csv");
-    CHECK_THAT(table, Contains("barrier,first_contact [s],peak_force [N],peak_dynamic_pressure [Pa]"));
-    CHECK_THAT(table, Contains("house_2,,,,,,0,64,,,,,,,,\n"));
+    CHECK_THAT(
+        table,
+        Contains("barrier,first_contact [s],peak_force [N],peak_force_mean_over [s],peak_dynamic_pressure [Pa]"));
+    CHECK_THAT(table, Contains("house_2,,,,,,,0,64,,,,,,,,\n"));
     CHECK(std::count(table.begin(), table.end(), '\n') == 4);
     // What columns do not tell is null in the record, and not a number that could be one.
     const Json record = Json::parse(text_of(village.path() / "run" / "run.json"));
@@ -275,10 +279,6 @@ TEST_CASE("Depth at a wall does not depend on whether its face lies on an edge o
     CHECK(pressure_on_edge > 0.5 * pressure_off_edge);
 }
 
-TEST_CASE("A height that a feature lacks is refused with its name", "[barriers]") {
-    const Village village;
-    write_text(village.path() / "houses.geojson",
-               collection(square(75, 32, 8, R"("h":5)") + "," + square(75, 60, 8, R"("h":null)")));
 // Below a steep face the averaged bed is raised one node farther out, so that a pile has its depth two nodes from the wall.
 TEST_CASE("The depth at a wall is that of the pile before it", "[barriers][results]") {
     const Village village;
@@ -311,6 +311,10 @@ TEST_CASE("A force on a barrier has the time that it is the mean over, wherever 
                Contains("| dam | 0.2 s, as in `barriers.csv` | 3.16e+06 N | 7.9 s |") && !Contains("| none | 0 s"));
 }
 
+TEST_CASE("A height that a feature lacks is refused with its name", "[barriers]") {
+    const Village village;
+    write_text(village.path() / "houses.geojson",
+               collection(square(75, 32, 8, R"("h":5)") + "," + square(75, 60, 8, R"("h":null)")));
     const std::string text = text_of(village.path() / "case.toml");
     const std::string fixed = "height = 6";
     std::string by_field = text;

@@ -142,10 +142,8 @@ void write_barrier_table(const std::filesystem::path& csv, const std::vector<Bar
                          const std::vector<BarrierHit>& hits) {
     expect(hits.size() == summaries.size(), "every barrier has a hit");
     std::string text =
-        "barrier,first_contact [s],peak_force [N],peak_dynamic_pressure [Pa],peak_depth [m],run_up_elevation "
-        "[m],overtopped "
-        "[m3],area "
-        "[m2]";
+        "barrier,first_contact [s],peak_force [N],peak_force_mean_over [s],peak_dynamic_pressure [Pa],peak_depth [m],"
+        "run_up_elevation [m],overtopped [m3],area [m2]";
     for (const char* side : kSides) text += fmt::format(",dynamic_pressure_{0} [Pa],depth_{0} [m]", side);
     text += '\n';
     for (std::size_t n = 0; n < hits.size(); ++n) {
@@ -153,8 +151,8 @@ void write_barrier_table(const std::filesystem::path& csv, const std::vector<Bar
         const BarrierHit& hit = hits[n];
         const double none = BarrierHit::unknown;
         text += s.name + cell(s.first_contact >= 0.0 ? s.first_contact : none) +
-                cell(s.blur > 0.0 ? s.peak_force : none) + cell(hit.pressure) + cell(hit.depth) + cell(s.run_up) +
-                cell(s.overtopped) + cell(hit.area);
+                cell(s.blur > 0.0 ? s.peak_force : none) + cell(s.blur > 0.0 ? s.blur : none) + cell(hit.pressure) +
+                cell(hit.depth) + cell(s.run_up) + cell(s.overtopped) + cell(hit.area);
         for (std::size_t side = 0; side < kSides.size(); ++side)
             text += cell(hit.side_pressure[side]) + cell(hit.side_depth[side]);
         text += '\n';

@@ -342,6 +342,9 @@ std::string mean_forces(const RunRecord& r, const std::vector<std::size_t>& show
             const Vec3 force = without_round_off(m.force), moment = without_round_off(m.moment);
             rows += fmt::format(
                 "| {} | {:.4g} s | {:.4g} N | {:.4g} s | {:.4g}, {:.4g}, {:.4g} N | {:.4g}, {:.4g}, {:.4g} N m |\n",
+        if (b.peak_force > 0.0)
+            rows += fmt::format("| {} | {:.4g} s, as in `barriers.csv` | {:.4g} N | {:.4g} s | - | - |\n", b.name,
+                                b.blur, b.peak_force, b.peak_force_time);
                 b.name, m.window, m.largest, m.time, force[0], force[1], force[2], moment[0], moment[1], moment[2]);
         }
     }

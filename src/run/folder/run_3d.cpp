@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "observe/table.h"
 #include "run/folder/run_film.h"
 #include "vtk_io/figures/figure_3d.h"
 #include "vtk_io/figures/film.h"
@@ -85,6 +86,8 @@ public:
 
 private:
     /// At that time; before the first loads, and between, the faces that are known without any.
+        if (const BarrierSolid* const barrier = figure.moment.most_loaded())
+            figure.struck = struck_text(static_cast<std::size_t>(barrier->number), time(number));
     std::vector<BarrierSolid> barriers(double time) const {
         if (loads_.empty()) return {};
         const auto found = std::find(loads_.begin(), loads_.end(), time);
@@ -93,6 +96,31 @@ private:
         if (!known)
             for (LoadedPatch& patch : patches) patch.pressure = 0.0;
         return barrier_solids(patches, source_.barrier_tops, source_.bed, meshes_);
+    /// "pressure on a, seen along its load; force 3160 kN, mean over 0.2 s": the force is that of the barrier's table.
+    std::string struck_text(std::size_t barrier, double time) const {
+        if (barrier >= source_.barriers.size()) return "pressure on the barrier, seen along its load";
+        const std::string& name = source_.barriers[barrier].name;
+        std::string text = fmt::format("pressure on {}, seen along its load", name);
+        const auto over = source_.mean_over.find(name);
+        if (over == source_.mean_over.end()) return text;
+        try {
+            const Table table = read_table(source_.run_dir / "barriers" / (name + ".csv"));
+            const std::vector<double>& t = table.column("t");
+            constexpr double kDigits = 1e-9;  // texts of a time differ in their last digits
+            const auto row = std::find_if(t.begin(), t.end(), [&](double known) {
+                return std::abs(known - time) <= kDigits * std::max(1.0, time);
+            });
+            if (row == t.end()) return text;
+            const double force = 1e-3 * table.column("mean_force")[static_cast<std::size_t>(row - t.begin())];
+            if (!std::isfinite(force)) return text;
+            return fmt::format("{}; force {} kN, mean over {:.3g} s", text,
+                               force < 10.0 ? fmt::format("{:.2g}", force) : fmt::format("{:.0f}", force),
+                               over->second);
+        } catch (const UserError&) {  // more barriers than have tables
+            return text;
+        }
+    }
+
     }
 
     const FigureSource& source_;

@@ -232,7 +232,9 @@ ChartFigure barrier_chart(const FigureSource& source, const std::string& name, c
     if (has_finite(table, "run_up")) figure.panels.push_back(up);
     if (has_values(table, "overtopped")) figure.panels.push_back(over);
     if (!table.has("fx")) return figure;  // columns alone: no forces
-    mean.curves = {curve("horizontal, mean", t, table.column("mean_force"))};
+    const auto over_s = source.mean_over.find(name);
+    const std::string of = over_s == source.mean_over.end() ? "" : fmt::format(" over {:.3g} s", over_s->second);
+    mean.curves = {curve("horizontal, mean" + of, t, table.column("mean_force"))};
     parts.curves = {curve("east", t, table.column("fx")), curve("north", t, table.column("fy")),
                     curve("up", t, table.column("fz"))};
     figure.panels.insert(figure.panels.begin(), {mean, parts});
