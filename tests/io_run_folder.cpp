@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "catch.h"
 #include "fresh_folder.h"
+#include "run/folder/gauge_table.h"
 #include "run/folder/run_folder.h"
 #include "run/folder/run_lock.h"
 #include "run/folder/run_record.h"
@@ -183,7 +184,16 @@ TEST_CASE("a lock that is held is a run that goes on, a file that was left behin
     CHECK_FALSE(is_run_going_on(run));
 }
 
-TEST_CASE("round-off below zero is nothing that left the domain") {
+TEST_CASE("a film at a gauge has no speed in the report, as it has none among the peaks") {
+    const FreshFolder folder;
+    fs::create_directories(folder.path() / "gauges");
+    std::ofstream(folder.path() / "gauges" / "g.csv") << "t [s],depth [m],speed [m/s]\n1,0.0008,13.3\n2,0.05,2.5\n";
+    const std::vector<Gauge> gauges{{"g", Vec2(0, 0)}};
+    CHECK_THAT(gauge_section(gauges, 0.1, folder.path()), Catch::Contains("| not reached | 0.05 m | 2.5 m/s |"));
+    CHECK_THAT(gauge_section(gauges, 1.0, folder.path()), Catch::Contains("| not reached | 0.05 m | 0 m/s |"));
+}
+
+TEST_CASE("round-off of a total is nothing that left the domain") {
     const FreshFolder folder;
     RunRecord record;
     record.density = 1000.0;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "observe/table.h"
+#include "run/folder/gauge_table.h"
 #include "vtk_io/figures/chart_figure.h"
 
 namespace frana {
@@ -188,7 +189,9 @@ ChartFigure gauge_chart(const FigureSource& source) {
     for (const Gauge& gauge : source.gauges) {
         const Table table = read_table(source.run_dir / "gauges" / (gauge.name + ".csv"));
         depth.curves.push_back(curve(gauge.name, table.column("t"), table.column("depth")));
-        speed.curves.push_back(curve(gauge.name, table.column("t"), table.column("speed")));
+        speed.curves.push_back(
+            curve(gauge.name, table.column("t"),
+                  speeds_that_count(table.column("depth"), table.column("speed"), source.footprint_depth)));
     }
     figure.panels = {depth, speed};
     return figure;
