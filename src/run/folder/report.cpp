@@ -125,7 +125,9 @@ std::string results(const RunRecord& r) {
                 fmt::format("{:.6g} s of {:.6g} s, {} steps, {} frames", s.last.time, r.end, s.steps, s.frames));
     text +=
         row("deepest flow", fmt::format("{:.4g} m at t = {:.4g} s", s.extremes.max_depth, s.extremes.max_depth_time));
-    text += row("fastest flow, along the bed",
+    const std::string counts =
+        r.extras.points_apart ? "" : fmt::format(", where {:.3g} m deep or more", kSpeedCounts * r.footprint_depth);
+    text += row("fastest flow, along the bed" + counts,
                 fmt::format("{:.4g} m/s at t = {:.4g} s", s.extremes.max_speed, s.extremes.max_speed_time));
     text += row("largest dynamic pressure, density times speed squared",
                 fmt::format("{:.4g} kPa", 1e-3 * r.peak_dynamic_pressure));
