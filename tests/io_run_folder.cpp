@@ -201,4 +201,7 @@ TEST_CASE("round-off of a total is nothing that left the domain") {
     CHECK_THAT(report_markdown(record, folder.path()), Catch::Contains("| left the domain | 0 m3 |"));
     record.summary.last.mass_left = 2000.0;
     CHECK_THAT(report_markdown(record, folder.path()), Catch::Contains("| left the domain | 2 m3 |"));
+    record.summary.first.mass = 2e6;
+    record.summary.last.mass_left = 7e-10;  // of 2000 m3
+    CHECK_THAT(report_markdown(record, folder.path()), Catch::Contains("| left the domain | 0 m3 |"));
 }
