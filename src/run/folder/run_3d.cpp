@@ -45,6 +45,15 @@ public:
         return count() - 1;
     }
 
+    /// The output midway from the first with points to `last`.
+    Index midway(Index last) const {
+        Index first = last;
+        for (Index number = 0; number < last && first == last; ++number)
+            if (moment(number).typical_size > 0.0) first = number;
+        const Index middle = (first + last) / 2;
+        return moment(middle).typical_size > 0.0 ? middle : last;
+    }
+
     /// The output with points and with the largest horizontal load on one barrier; nothing without any.
     std::optional<Index> hardest() const {
         double most = 0.0;
@@ -77,6 +86,8 @@ public:
         figure.footer = figure.moment.typical_size > 0.0
                             ? fmt::format("points of {:.2g} m; {}", figure.moment.typical_size, source_.footer)
                             : source_.footer;
+        if (const BarrierSolid* const barrier = figure.moment.most_loaded())
+            figure.struck = struck_text(static_cast<std::size_t>(barrier->number), time(number));
         figure.width = source_.width;
         figure.height = std::max(source_.width * 7 / 10, 300);
         return figure;
@@ -85,17 +96,6 @@ public:
     int digits() const { return decimals_of(times_); }
 
 private:
-    /// At that time; before the first loads, and between, the faces that are known without any.
-        if (const BarrierSolid* const barrier = figure.moment.most_loaded())
-            figure.struck = struck_text(static_cast<std::size_t>(barrier->number), time(number));
-    std::vector<BarrierSolid> barriers(double time) const {
-        if (loads_.empty()) return {};
-        const auto found = std::find(loads_.begin(), loads_.end(), time);
-        const bool known = found != loads_.end();
-        std::vector<LoadedPatch> patches = read_barriers(source_.run_dir, known ? found - loads_.begin() : 0);
-        if (!known)
-            for (LoadedPatch& patch : patches) patch.pressure = 0.0;
-        return barrier_solids(patches, source_.barrier_tops, source_.bed, meshes_);
     /// "pressure on a, seen along its load; force 3160 kN, mean over 0.2 s": the force is that of the barrier's table.
     std::string struck_text(std::size_t barrier, double time) const {
         if (barrier >= source_.barriers.size()) return "pressure on the barrier, seen along its load";
@@ -121,6 +121,15 @@ private:
         }
     }
 
+    /// At that time; before the first loads, and between, the faces that are known without any.
+    std::vector<BarrierSolid> barriers(double time) const {
+        if (loads_.empty()) return {};
+        const auto found = std::find(loads_.begin(), loads_.end(), time);
+        const bool known = found != loads_.end();
+        std::vector<LoadedPatch> patches = read_barriers(source_.run_dir, known ? found - loads_.begin() : 0);
+        if (!known)
+            for (LoadedPatch& patch : patches) patch.pressure = 0.0;
+        return barrier_solids(patches, source_.barrier_tops, source_.bed, meshes_);
     }
 
     const FigureSource& source_;
@@ -140,16 +149,20 @@ struct Wanted {
     bool close = false;  ///< the barrier and what is about it, not all of the flow
 };
 
+/// The hardest load from nearby, and all of the flow at the end; where these are one output, all of it midway there.
 std::vector<Wanted> wanted_moments(const Run3d& run, const FigureSource& source) {
     std::vector<Wanted> wanted;
-    if (const auto hardest = run.hardest())
+    const std::optional<Index> hardest = run.hardest();
+    if (hardest)
         wanted.push_back({*hardest, "impact",
                           fmt::format("at {:.4g} s, the output with the largest load on a barrier", run.time(*hardest)),
                           true});
-    const Index last = run.last();
-    wanted.push_back({last, "points",
-                      last + 1 == run.count() ? "at the end" : fmt::format("at {:.4g} s, the last", run.time(last)),
-                      false});
+    const Index last = run.last(), middle = last == hardest ? run.midway(last) : last;
+    const std::string when =
+        middle != last            ? fmt::format("at {:.4g} s, midway through the outputs with points", run.time(middle))
+        : last + 1 == run.count() ? "at the end"
+                                  : fmt::format("at {:.4g} s, the last output with points", run.time(last));
+    wanted.push_back({middle, "points", when, false});
     if (source.time) {
         const Index number = run.nearest(*source.time);
         const std::string moment = fmt::format("{:.6g}", run.time(number));
