@@ -95,6 +95,14 @@ TEST_CASE("Points of another program are binned; what stands beyond the terrain 
     CHECK(sum(pixels_of(finished_run().folder() / "foreign/velocity_x.tif").values) == Approx(2.5).epsilon(1e-7));
 }
 
+TEST_CASE("Points as a table are not read back, and the sentence says which are", "[convert]") {
+    convert("table.csv");
+    const Outcome back = finished_run().frana("convert out --points table.csv --back none");
+    CHECK(back.code == 2);
+    CHECK_THAT(back.err, Contains("table.csv: found a file that is not HDF5") && Contains("ends in .h5") &&
+                             !Contains("signature"));
+}
+
 TEST_CASE("Points that are none, and half a command line, are refused with a sentence", "[convert]") {
     const fs::path folder = finished_run().folder();
     CHECK_THAT(refused("out --points absent.h5 --back none").err, Contains("absent.h5: cannot be read: "));
