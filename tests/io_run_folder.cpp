@@ -100,6 +100,8 @@ TEST_CASE("a file that no run made is not replaced, whatever the options") {
         touch(folder.path() / name);
         CHECK_THROWS_WITH(prepare_run_folder(folder.path(), {}, Overwrite::yes),
                           Catch::Contains(name) && Catch::Contains("no run left there"));
+        CHECK_THROWS_WITH(prepare_run_folder(folder.path()),  // which --overwrite would not cure
+                          Catch::Contains("no run left there") && !Catch::Contains("--overwrite"));
         CHECK(text_of(folder.path() / name) == "text");
         fs::remove(folder.path() / name);
     }
@@ -199,9 +201,9 @@ TEST_CASE("round-off of a total is nothing that left the domain") {
     record.density = 1000.0;
     record.summary.last.mass_left = -7e-10;
     CHECK_THAT(report_markdown(record, folder.path()), Catch::Contains("| left the domain | 0 m3 |"));
-    record.summary.last.mass_left = 2000.0;
-    CHECK_THAT(report_markdown(record, folder.path()), Catch::Contains("| left the domain | 2 m3 |"));
     record.summary.first.mass = 2e6;
     record.summary.last.mass_left = 7e-10;  // of 2000 m3
     CHECK_THAT(report_markdown(record, folder.path()), Catch::Contains("| left the domain | 0 m3 |"));
+    record.summary.last.mass_left = 2000.0;
+    CHECK_THAT(report_markdown(record, folder.path()), Catch::Contains("| left the domain | 2 m3 |"));
 }
