@@ -107,7 +107,7 @@ TEST_CASE("Points that are none, and half a command line, are refused with a sen
     const fs::path folder = finished_run().folder();
     CHECK_THAT(refused("out --points absent.h5 --back none").err, Contains("absent.h5: cannot be read: "));
     frana::write_text(folder / "text.h5", "no points");
-    CHECK_THAT(refused("out --points text.h5 --back none").err, Contains("text.h5: cannot be read: "));
+    CHECK_THAT(refused("out --points text.h5 --back none").err, Contains("text.h5: found a file that is not HDF5"));
     write_foreign(folder / "still.h5", {1, 1, 1}, false);
     CHECK(refused("out --points still.h5 --back none").err ==
           "still.h5: has no velocity of 3 per point; expected position (N, 3), velocity (N, 3), mass (N) and volume "
