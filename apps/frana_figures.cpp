@@ -63,6 +63,15 @@ std::vector<std::string> never_hit_in(const nlohmann::json& json) {
     return names;
 }
 
+/// The times that forces of barriers are means over, by name [s].
+std::map<std::string, double> mean_over_in(const nlohmann::json& json) {
+    std::map<std::string, double> times;
+    for (const nlohmann::json& barrier : json.value("barriers", nlohmann::json::array()))
+        if (const auto time = barrier.find("averaged_over"); time != barrier.end() && time->is_number() && *time > 0.0)
+            times[barrier.at("name").get<std::string>()] = time->get<double>();
+    return times;
+}
+
 /// Killed, or without room on the disk. Where file systems have no locks it may still go on.
 UserError broke_off(const fs::path& run_dir) {
     const std::string out = shell_word(run_dir.string());
@@ -92,6 +101,7 @@ void read_record(const fs::path& run_dir, FigureSource& source) {
         source.footprint_depth = results.at("footprint_depth").get<double>();
         source.front_origin = results.value("front_from", source.front_origin);  // older runs have none
         source.never_hit = never_hit_in(json);
+        source.mean_over = mean_over_in(json);
     } catch (const nlohmann::json::exception&) {
         throw UserError(
             fmt::format("{}: is not what a run leaves there; expected the record of a finished run; "

@@ -12,7 +12,10 @@
 #include "observe/barriers.h"
 #include "program.h"
 #include "read_layer.h"
+#include "read_raster.h"
 #include "run/folder/barrier_hits.h"
+#include "run/folder/run_folder.h"
+#include "run/folder/run_record.h"
 
 using namespace frana;
 namespace fs = std::filesystem;
@@ -107,8 +110,10 @@ TEST_CASE("The report has the time of contact of houses that columns reach, and 
     CHECK_THAT(report, Contains("| house_2 | none | - | - |") && Contains("First contact is when the depth at a face"));
     CHECK_THAT(report, !Contains("| house_1 | none") && !Contains("| house_3 | none"));
     const std::string table = text_of(village.path() / "run" / "barriers.csv");
-    CHECK_THAT(table, Contains("barrier,first_contact [s],peak_force [N],peak_dynamic_pressure [Pa]"));
-    CHECK_THAT(table, Contains("house_2,,,,,,0,64,,,,,,,,\n"));
+    CHECK_THAT(
+        table,
+        Contains("barrier,first_contact [s],peak_force [N],peak_force_mean_over [s],peak_dynamic_pressure [Pa]"));
+    CHECK_THAT(table, Contains("house_2,,,,,,,0,64,,,,,,,,\n"));
     CHECK(std::count(table.begin(), table.end(), '\n') == 4);
     // What columns do not tell is null in the record, and not a number that could be one.
     const Json record = Json::parse(text_of(village.path() / "run" / "run.json"));
@@ -272,6 +277,38 @@ TEST_CASE("Depth at a wall does not depend on whether its face lies on an edge o
     // Both raise the same nodes before the flow, from 77.5 m on, and the first those at 72.5 m too: a cell nearer.
     CHECK(on_edge > 0.5 * off_edge);
     CHECK(pressure_on_edge > 0.5 * pressure_off_edge);
+}
+
+// Below a steep face the averaged bed is raised one node farther out, so that a pile has its depth two nodes from the wall.
+TEST_CASE("The depth at a wall is that of the pile before it", "[barriers][results]") {
+    const Village village;
+    write_text(village.path() / "houses.geojson", collection(square(75, -5, 110, "")));
+    REQUIRE(call_frana(village.path(), "run case.toml --out run --quiet --set barrier.0.height=60").code == 0);
+    const Raster peak = raster_of(village.path() / "run", "peak_depth.tif");
+    double pile = 0.0;
+    for (Index j = 0; j < peak.geometry.ny; ++j)
+        for (Index i = 0; i < peak.geometry.nx; ++i)
+            if (peak.geometry.x(i) > 60.0 && peak.geometry.x(i) < 75.0) pile = std::max(pile, peak.at(i, j));
+    REQUIRE(pile > 1.0);
+    const Layer layer(village.path() / "run" / "results.gpkg", "barriers");
+    const OGRFeatureUniquePtr wall(layer.get().GetNextFeature());
+    CHECK(wall->GetFieldAsDouble("depth_west_m") == Approx(pile).epsilon(1e-6));  // rasters are in single precision
+}
+
+TEST_CASE("A force on a barrier has the time that it is the mean over, wherever it is told", "[barriers][results]") {
+    const FreshFolder folder;
+    BarrierSummary dam, none;
+    dam.name = "dam", none.name = "none";
+    dam.first_contact = 5.0, dam.peak_force = 3.16e6, dam.peak_force_time = 7.9, dam.blur = 0.2;
+    write_barrier_table(folder.path() / "barriers.csv", {dam, none}, {BarrierHit(), BarrierHit()});
+    const std::string table = text_of(folder.path() / "barriers.csv");
+    CHECK_THAT(table, Contains("peak_force [N],peak_force_mean_over [s],"));
+    CHECK_THAT(table, Contains("dam,5,3160000,0.2,") && Contains("none,,,,"));
+    RunRecord record;
+    record.density = 1000.0;
+    record.barriers = {dam, none};
+    CHECK_THAT(report_markdown(record, folder.path()),
+               Contains("| dam | 0.2 s, as in `barriers.csv` | 3.16e+06 N | 7.9 s |") && !Contains("| none | 0 s"));
 }
 
 TEST_CASE("A height that a feature lacks is refused with its name", "[barriers]") {

@@ -95,11 +95,19 @@ TEST_CASE("Points of another program are binned; what stands beyond the terrain 
     CHECK(sum(pixels_of(finished_run().folder() / "foreign/velocity_x.tif").values) == Approx(2.5).epsilon(1e-7));
 }
 
+TEST_CASE("Points as a table are not read back, and the sentence says which are", "[convert]") {
+    convert("table.csv");
+    const Outcome back = finished_run().frana("convert out --points table.csv --back none");
+    CHECK(back.code == 2);
+    CHECK_THAT(back.err, Contains("table.csv: found a file that is not HDF5") && Contains("ends in .h5") &&
+                             !Contains("signature"));
+}
+
 TEST_CASE("Points that are none, and half a command line, are refused with a sentence", "[convert]") {
     const fs::path folder = finished_run().folder();
     CHECK_THAT(refused("out --points absent.h5 --back none").err, Contains("absent.h5: cannot be read: "));
     frana::write_text(folder / "text.h5", "no points");
-    CHECK_THAT(refused("out --points text.h5 --back none").err, Contains("text.h5: cannot be read: "));
+    CHECK_THAT(refused("out --points text.h5 --back none").err, Contains("text.h5: found a file that is not HDF5"));
     write_foreign(folder / "still.h5", {1, 1, 1}, false);
     CHECK(refused("out --points still.h5 --back none").err ==
           "still.h5: has no velocity of 3 per point; expected position (N, 3), velocity (N, 3), mass (N) and volume "

@@ -10,6 +10,7 @@
 #include "ensemble/statistics.h"
 #include "io/deflate.h"
 #include "pond.h"
+#include "run/ensemble/maps.h"
 #include "run/ensemble/outcomes.h"
 #include "run/web/web_page.h"
 
@@ -35,6 +36,17 @@ std::size_t pixel_at(const frana::Raster& map, double x, double y) {
 }
 
 }  // namespace
+
+TEST_CASE("Of runs of unequal weight that failed the sentence says what a probability may be", "[ensemble]") {
+    frana::EnsembleSummary summary;
+    summary.samples = summary.run = 6, summary.failed = 1, summary.failed_share = 0.154;
+    summary.weighted = true, summary.effective = 4.0;
+    CHECK(
+        runs_sentence(summary) ==
+        "6 of 6 runs, which tell as much as 4 of equal weight; 1 with 0.154 of the weight failed: had these exceeded a "
+        "threshold nowhere, a probability p of the maps would be 0.846 p, and had they exceeded it everywhere, 0.846 p "
+        "+ 0.154.");
+}
 
 TEST_CASE("Gauges are outcomes of the ensemble, and maps of arrival tell when a share of the runs has come",
           "[ensemble]") {

@@ -62,6 +62,15 @@ TEST_CASE("A thick release leaves the colours of the runout, and the bar says ho
     CHECK(colour_range(field, 0.1, Colormap::depth, std::nullopt, Top::flow).high >= 5.17);  // the 99.5th percentile
 }
 
+TEST_CASE("A deep deposit leaves its colours to what the flow eroded", "[figures]") {
+    std::vector<double> field(1000, -0.3);
+    std::fill(field.begin(), field.begin() + 50, 6.0);
+    const ColourRange range = colour_range(field, 0.0, Colormap::diverging, std::nullopt, Top::flow);
+    CHECK(range.high == Approx(1.0));  // 0.9, rounded up
+    CHECK(range.low == -range.high);
+    CHECK((range.more_above && range.most == 6.0));
+}
+
 TEST_CASE("All colour maps run evenly from light to dark or through light", "[figures]") {
     for (double t = 0.0; t < 1.0; t += 0.02)
         CHECK(brightness(colour_at(Colormap::depth, t + 0.02)) < brightness(colour_at(Colormap::depth, t)));

@@ -208,6 +208,33 @@ TEST_CASE("A run that is stopped between its late releases goes on with the same
     CHECK(record_of(parts)["late_releases"] == record_of(straight)["late_releases"]);
 }
 
+TEST_CASE("The bed at the start is that without the releases of the start that stood in it", "[program][late][scar]") {
+    const Releases plane;
+    write_text(plane.file(), "[terrain]\ndem = \"dem.asc\"\n" + release("release.geojson", "included_in_dem = true\n") +
+                                 release("timed.geojson", "at = 0.5\nincluded_in_dem = true\n") + "[time]\nend = 1\n" +
+                                 kBed);
+    const fs::path dir = plane.folder() / "out";
+    const Outcome run = plane.frana("run CASE --quiet --out " + dir.string());
+    INFO(run.err);
+    REQUIRE(run.code == 0);
+    const Raster start = raster_of(dir, "elevation.tif"), change = raster_of(dir, "bed_change.tif"),
+                 dem = raster_in(plane.folder() / "dem.asc");
+    CHECK(off_its_change(start, dir) < 1e-4);  // single precision
+    const auto deepest = [](const Raster& a, const Raster* less) {
+        double most = 0.0;
+        for (Index j = 0; j < a.geometry.ny; ++j)
+            for (Index i = 0; i < a.geometry.nx; ++i) {
+                const double value = a.at(i, j) - (less ? less->at(i, j) : 0.0);
+                if (a.geometry.x(i) < 60.0) most = std::min(most, value);  // the first release
+            }
+        return most;
+    };
+    REQUIRE(dem.geometry.nx == start.geometry.nx);
+    CHECK(deepest(start, &dem) == Approx(-1.5).epsilon(1e-4));
+    CHECK(deepest(change, nullptr) == 0.0);
+    CHECK(*std::min_element(change.values.begin(), change.values.end()) == Approx(-1.5).epsilon(1e-4));
+}
+
 TEST_CASE("A run shows the bed that fell when a release entered that stood in it", "[program][late][scar]") {
     PlaneCase plane;
     write_text(plane.folder() / "below.geojson", rectangle_text(70, 30, 90, 70));

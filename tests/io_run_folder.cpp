@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "catch.h"
 #include "fresh_folder.h"
+#include "run/folder/gauge_table.h"
 #include "run/folder/run_folder.h"
 #include "run/folder/run_lock.h"
 #include "run/folder/run_record.h"
@@ -99,6 +100,8 @@ TEST_CASE("a file that no run made is not replaced, whatever the options") {
         touch(folder.path() / name);
         CHECK_THROWS_WITH(prepare_run_folder(folder.path(), {}, Overwrite::yes),
                           Catch::Contains(name) && Catch::Contains("no run left there"));
+        CHECK_THROWS_WITH(prepare_run_folder(folder.path()),  // which --overwrite would not cure
+                          Catch::Contains("no run left there") && !Catch::Contains("--overwrite"));
         CHECK(text_of(folder.path() / name) == "text");
         fs::remove(folder.path() / name);
     }
@@ -183,11 +186,23 @@ TEST_CASE("a lock that is held is a run that goes on, a file that was left behin
     CHECK_FALSE(is_run_going_on(run));
 }
 
-TEST_CASE("round-off below zero is nothing that left the domain") {
+TEST_CASE("a film at a gauge has no speed in the report, as it has none among the peaks") {
+    const FreshFolder folder;
+    fs::create_directories(folder.path() / "gauges");
+    std::ofstream(folder.path() / "gauges" / "g.csv") << "t [s],depth [m],speed [m/s]\n1,0.0008,13.3\n2,0.05,2.5\n";
+    const std::vector<Gauge> gauges{{"g", Vec2(0, 0)}};
+    CHECK_THAT(gauge_section(gauges, 0.1, folder.path()), Catch::Contains("| not reached | 0.05 m | 2.5 m/s |"));
+    CHECK_THAT(gauge_section(gauges, 1.0, folder.path()), Catch::Contains("| not reached | 0.05 m | 0 m/s |"));
+}
+
+TEST_CASE("round-off of a total is nothing that left the domain") {
     const FreshFolder folder;
     RunRecord record;
     record.density = 1000.0;
     record.summary.last.mass_left = -7e-10;
+    CHECK_THAT(report_markdown(record, folder.path()), Catch::Contains("| left the domain | 0 m3 |"));
+    record.summary.first.mass = 2e6;
+    record.summary.last.mass_left = 7e-10;  // of 2000 m3
     CHECK_THAT(report_markdown(record, folder.path()), Catch::Contains("| left the domain | 0 m3 |"));
     record.summary.last.mass_left = 2000.0;
     CHECK_THAT(report_markdown(record, folder.path()), Catch::Contains("| left the domain | 2 m3 |"));

@@ -470,11 +470,12 @@ std::vector<std::string> StagedRun::remarks() const {
     const SolidStatus& s = points_->status();
     constexpr double kRoundOff = 1e-12;
     const double density = scene_.density, rest = s.mass / density, gone = s.mass_left - returned_.mass;
-    remarks.push_back(
-        fmt::format("3D points from {:.6g} s on: {} now, {:.6g} m3 of them came in over the window's edges later, "
-                    "{:.6g} m3 became columns again, {:.6g} m3 left through its sides; top of the space {:.6g} m",
-                    scene_.solid->from, s.points, converted_.mass_later / density, returned_.mass / density,
-                    gone > kRoundOff * s.mass_left ? gone / density : 0.0, start_.top));
+    remarks.push_back(fmt::format(
+        "3D points from {:.6g} s on: {:.6g} m3 of columns became points then, {:.6g} m3 came in over the "
+        "window's edges later, {:.6g} m3 became columns again, {:.6g} m3 left through its sides; {} points "
+        "now; top of the space {:.6g} m",
+        scene_.solid->from, (converted_.mass - converted_.mass_later) / density, converted_.mass_later / density,
+        returned_.mass / density, gone > kRoundOff * s.mass_left ? gone / density : 0.0, s.points, start_.top));
     if (ended_ && !(converted_.mass > 0.0))
         remarks.push_back(fmt::format(
             "stage.until: the 3D stage ended at {:.6g} s, before anything came to its window: all of the run is "

@@ -103,6 +103,11 @@ void require_valid(const std::filesystem::path& file, const SolidPoints& points)
 SolidPoints read_points_hdf5(const std::filesystem::path& path) {
     const hdf5::QuietErrors quiet;
     const Access access(path, Access::Mode::read);
+    if (std::filesystem::is_regular_file(path) && H5Fis_hdf5(path.c_str()) == 0)
+        throw UserError(
+            fmt::format("{}: found a file that is not HDF5; expected points as `frana convert` writes them to a file "
+                        "that ends in .h5; give one, since .csv and .vtp are not read back",
+                        path.string()));
     const Handle file(access, H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     SolidPoints points;
     points.position = read_column(access, file, "position", 3);

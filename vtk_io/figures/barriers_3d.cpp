@@ -171,6 +171,7 @@ std::vector<BarrierSolid> barrier_solids(const std::vector<LoadedPatch>& patches
         if (faces.empty()) continue;
         if (static_cast<std::size_t>(n) < meshes.size() && meshes[static_cast<std::size_t>(n)]) {
             solids.push_back(mesh_solid(faces, meshes[static_cast<std::size_t>(n)], bed));
+            solids.back().number = n;
             if (solids.back().pieces.empty()) solids.pop_back();  // all of it is buried
             continue;
         }
@@ -182,6 +183,7 @@ std::vector<BarrierSolid> barrier_solids(const std::vector<LoadedPatch>& patches
         if (faces.size() < 4 || !has_one_top || faces.back().is_side())
             continue;  // of any shape, and its mesh is not known
         solids.push_back(Builder(std::move(faces), top, bed).solid());
+        solids.back().number = n;
     }
     return solids;
 }

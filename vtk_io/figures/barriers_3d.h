@@ -18,6 +18,7 @@ struct BarrierSolid {
         Vec3 normal{0, 0, 1};       ///< outward, unit length
         double pressure = 0.0;      ///< mean over the patch and those around it on its face [Pa]
     };
+    int number = 0;  ///< of the barrier, in the case's order
     std::vector<Piece> pieces;
     std::vector<Polyline> rings;               ///< of the outline, open: the last corner is not the first [m]
     std::vector<std::vector<Vec3>> edges;      ///< along the top and down the corners

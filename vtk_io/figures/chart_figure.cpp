@@ -49,8 +49,10 @@ Axis axis_over(std::optional<Range> data, const std::optional<Range>& given, boo
     Range range = given ? *given : data ? *data : (log ? Range{1.0, 10.0} : Range{0.0, 1.0});
     if (log && range.first <= 0.0) range.first = std::min(1e-3 * std::abs(range.second), 1.0);
     if (range.second <= range.first) {
-        const double half = range.first != 0.0 ? 0.1 * std::abs(range.first) : 1.0;
-        range = log ? Range{range.first / 2.0, range.first * 2.0} : Range{range.first - half, range.first + half};
+        const double half = 0.1 * std::abs(range.first);
+        range = log                  ? Range{range.first / 2.0, range.first * 2.0}
+                : range.first == 0.0 ? Range{0.0, 1.0}
+                                     : Range{range.first - half, range.first + half};
     }
     if (!given && margin > 0.0) {
         if (log) {

@@ -85,7 +85,7 @@ double light_on(const Vec3& normal, double azimuth) {
 }
 
 /// The sides that the load acts on, seen along it.
-Objects3d::Inset struck_face(const BarrierSolid& barrier, const Colours3d& colours) {
+Objects3d::Inset struck_face(const BarrierSolid& barrier, const Colours3d& colours, const std::string& caption) {
     Objects3d::Inset inset;
     const Vec2 ahead = barrier.load.head<2>().normalized(), right(ahead.y(), -ahead.x());
     constexpr double kFacing = -0.3;  // sides more than about 70 degrees askew show nothing
@@ -95,9 +95,7 @@ Objects3d::Inset struck_face(const BarrierSolid& barrier, const Colours3d& colou
         for (const Vec3& p : piece.corners) area.corners.emplace_back(right.dot(p.head<2>()), p.z());
         inset.areas.push_back(area);
     }
-    const double load = 1e-3 * barrier.load.head<2>().norm();
-    inset.caption = fmt::format("pressure on the barrier, seen along the load of {} kN",
-                                load < 10.0 ? fmt::format("{:.2g}", load) : fmt::format("{:.0f}", load));
+    inset.caption = caption;
     return inset;
 }
 
@@ -119,7 +117,8 @@ Objects3d objects_of(const Figure3d& figure, double azimuth) {
             if (holds(figure.view.box, edge.front()) && holds(figure.view.box, edge.back()))
                 objects.edges.push_back(edge);
     }
-    if (const BarrierSolid* barrier = figure.moment.most_loaded()) objects.inset = struck_face(*barrier, colours);
+    if (const BarrierSolid* barrier = figure.moment.most_loaded())
+        objects.inset = struck_face(*barrier, colours, figure.struck);
     objects.bars = colours.bars();
     return objects;
 }

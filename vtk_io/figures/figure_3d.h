@@ -21,6 +21,7 @@ struct Figure3d {
     std::optional<ViewAngles3d> look;  ///< nothing: best_view()
     std::vector<Vec3> room;            ///< places that the picture has room for; none: those of the moment [m]
     std::string title, footer;
+    std::string struck;               ///< caption of the most loaded barrier's faces, shown by themselves
     int width = 1600, height = 1100;  ///< [px]; a section is as high as it needs, and at most this
 };
 

@@ -213,7 +213,7 @@ private:
     }
 
     void barriers() {
-        std::vector<std::pair<std::string, Vec2>> names;
+        std::vector<Named> parts;
         for (const NamedLine& barrier : figure_.barriers) {
             const auto pieces = on_sheet(barrier.line);
             if (pieces.empty()) continue;
@@ -221,14 +221,49 @@ private:
                 stroke_cased(canvas_, piece, {colours::barrier, kBarrierPen * layout_.unit, {}});
             const Rectangle box = box_of(pieces);
             if (std::max(box.width(), box.height()) < kSmall * layout_.unit) houses_.push_back(box);
-            const bool again = !names.empty() && names.back().first == barrier.name;  // a hole, or another part
-            if (!again) names.emplace_back(barrier.name, Vec2(box.x1, 0.5 * (box.y0 + box.y1)));  // to its right
+            parts.push_back({barrier.name, box});
         }
-        if (names.size() >= kBarriersNumbered) return;
-        for (const auto& [text, at] : names) {
-            const std::string shown = names.size() <= kBarriersNamed ? text : number_in(text);
-            if (!shown.empty()) name(shown, at);
+        const auto again = [](const Named& a, const Named& b) { return a.name == b.name; };  // a hole, or another part
+        std::vector<Named> named = parts;
+        named.erase(std::unique(named.begin(), named.end(), again), named.end());
+        if (named.size() >= kBarriersNumbered) return;
+        for (const Named& one : named) {
+            const std::string shown = named.size() <= kBarriersNamed ? one.name : number_in(one.name);
+            if (shown.empty()) continue;
+            if (const auto place = nearest_to_it(shown, one, parts))
+                write(shown, *place);
+            else
+                name(shown, {one.box.x1, 0.5 * (one.box.y0 + one.box.y1)});
         }
+    }
+
+    /// What is named, or a part of it, and the box around that [px].
+    struct Named {
+        std::string name;
+        Rectangle box;
+    };
+
+    static double distance(const Rectangle& a, const Rectangle& b) {
+        return std::hypot(std::max({0.0, a.x0 - b.x1, b.x0 - a.x1}), std::max({0.0, a.y0 - b.y1, b.y0 - a.y1}));
+    }
+
+    /// A free box for a barrier's name that is nearer to it than to any other: to its right or left, or above or below.
+    std::optional<Rectangle> nearest_to_it(const std::string& text, const Named& one,
+                                           const std::vector<Named>& all) const {
+        const double u = layout_.unit, half = 0.5 * text_size(text, name_style()).x();
+        const Rectangle& box = one.box;
+        const double x = 0.5 * (box.x0 + box.x1), y = 0.5 * (box.y0 + box.y1);
+        const Rectangle around[] = {next_to(text, {box.x1, y}, true, y), next_to(text, {box.x0, y}, false, y),
+                                    Rectangle{x - half, box.y1 + 0.4 * u, x + half, box.y1 + 1.6 * u},
+                                    Rectangle{x - half, box.y0 - 1.6 * u, x + half, box.y0 - 0.4 * u}};
+        const auto is_its_own = [&](const Rectangle& place) {
+            return std::none_of(all.begin(), all.end(), [&](const Named& other) {
+                return other.name != one.name && distance(place, other.box) < distance(place, box) + 0.3 * u;
+            });
+        };
+        for (const Rectangle& place : around)
+            if (fits(place) && is_its_own(place)) return place;
+        return {};
     }
 
     static Rectangle box_of(const std::vector<std::vector<Vec2>>& pieces) {

@@ -1,10 +1,11 @@
 // The face of the module.
 #include "base/version.h"
 #include "vtk_io/module/functions.h"
+#include "vtk_io/module/same_build.h"
 
 namespace {
 
-const frana::VtkFunctions kFunctions = {FRANA_VERSION, sizeof(frana::VtkFunctions),
+const frana::VtkFunctions kFunctions = {FRANA_VERSION " " FRANA_SAME_BUILD, sizeof(frana::VtkFunctions),
 #define FRANA_VTK_ROW(name) &frana::name,
                                         FRANA_VTK_FUNCTIONS(FRANA_VTK_ROW)
 #undef FRANA_VTK_ROW

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/version.h"
 #include "vtk_io/module/functions.h"
+#include "vtk_io/module/same_build.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -35,9 +36,10 @@ const VtkFunctions& open_module() {
         throw UserError(fmt::format("{}; {}", why, way_out));
     }
     const VtkFunctions& functions = *face();
-    if (std::string(functions.version) != FRANA_VERSION || functions.size != sizeof(VtkFunctions))
-        throw UserError(
-            fmt::format("{}: found version {} of another build; {}", FRANA_VTK_MODULE, functions.version, way_out));
+    const std::string expected = FRANA_VERSION " " FRANA_SAME_BUILD;
+    if (functions.build != expected || functions.size != sizeof(VtkFunctions))
+        throw UserError(fmt::format("{}: found that of another build, {}, where the program is {}; {}",
+                                    FRANA_VTK_MODULE, functions.build, expected, way_out));
     return functions;
 }
 

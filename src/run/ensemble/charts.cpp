@@ -49,10 +49,10 @@ Curve come_by(const WeightedRuns& runs, const std::string& name, const Outcome& 
 
 void draw_outcomes(const Charts& of) {
     ChartFigure figure;
-    figure.title = of.base.title;
+    figure.title = of.base.title + ": how far the runs come";
     figure.x_label = "distance [m]";
     std::vector<Curve> curves = {larger(of.runs, "straight from the release", straight_reach())};
-    if (!of.base.path.empty()) curves.push_back(larger(of.runs, "along the path of water", runout()));
+    if (!of.base.path.empty()) curves.push_back(larger(of.runs, "along the steepest path", runout()));
     figure.panels.push_back({"share of the runs that come farther [1]", curves, false, std::pair{0.0, 1.0}, 1.0});
     figure.footer = runs_sentence(of.summary);
     draw(of, figure, "runout.png");
@@ -65,7 +65,7 @@ void draw_gauges(const Charts& of) {
     for (std::size_t which = 0; which < std::size(axes) && !of.base.gauges.empty(); ++which) {
         const bool arrival = which == 2;
         ChartFigure figure;
-        figure.title = of.base.title;
+        figure.title = fmt::format("{}: {} at the gauges", of.base.title, arrival ? "arrival" : axes[which].first);
         figure.x_label = axes[which].second;
         ChartPanel panel{arrival ? "share of the runs that have come [1]" : "share of the runs with more [1]",
                          {},
@@ -91,7 +91,7 @@ void draw_convergence(const Charts& of) {
     const bool ordered = of.plan.method == Method::grid || of.plan.method == Method::table;
     if (!alike || ordered || of.plan.quantiles.empty() || of.runs.ended.size() < 2) return;
     ChartFigure figure;
-    figure.title = of.base.title;
+    figure.title = of.base.title + ": straight reach of the first runs";
     figure.x_label = "number of runs";
     std::vector<Curve> curves;
     for (const double q : of.plan.quantiles)
@@ -115,7 +115,7 @@ void draw_convergence(const Charts& of) {
 void draw_scatter(const Charts& of) {
     if (of.plan.design.points.empty()) return;  // of a table nothing is known but its values
     ChartFigure figure;
-    figure.title = of.base.title;
+    figure.title = of.base.title + ": straight reach by what varies";
     figure.x_label = "share of the key's distribution below the run's value [1]";
     figure.x_range = {0.0, 1.0};
     constexpr std::size_t at_most = 4;  // panels that can still be read

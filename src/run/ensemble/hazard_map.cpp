@@ -57,7 +57,7 @@ void draw(const std::filesystem::path& dir, const EnsembleBase& base, const Haza
     figure.shown_above = 0.5;
     for (const HazardClass& one : table.classes)
         figure.classes.push_back({one.name, {one.colour[0], one.colour[1], one.colour[2], 255}});
-    figure.title = base.title;
+    figure.title = base.title + ": classes of hazard";
     figure.survey = base.footprint;
     figure.barriers = barrier_plans(base.barriers);
     figure.footer =

@@ -264,8 +264,10 @@ std::string runs_sentence(const EnsembleSummary& s) {
     if (s.weighted) text += fmt::format(", which tell as much as {:.0f} of equal weight", s.effective);
     if (s.failed > 0 && s.weighted)
         text += fmt::format(
-            "; {} with {:.3g} of the weight failed: of a probability p between {:.3g} p and that and {:.3g} may be",
-            s.failed, s.failed_share, 1.0 - s.failed_share, s.failed_share);
+            "; {0} with {1:.3g} of the weight failed: had these exceeded a threshold nowhere, a probability p of the "
+            "maps "
+            "would be {2:.3g} p, and had they exceeded it everywhere, {2:.3g} p + {1:.3g}",
+            s.failed, s.failed_share, 1.0 - s.failed_share);
     else if (s.failed > 0)
         text += fmt::format("; {} failed: where k of n runs exceed a threshold, between k and k + {} may", s.failed,
                             s.failed);

@@ -32,25 +32,37 @@ NodeBox pixels_around(const Polygons& outline, const GridGeometry& grid) {
     std::vector<Vec2> corners;
     for (const Polygon& polygon : outline.parts)
         for (const auto& ring : polygon.rings) corners.insert(corners.end(), ring.begin(), ring.end());
-    return common(widened(cells_of(corners, grid), 2), NodeBox::all(grid));
+    return common(widened(cells_of(corners, grid), 3), NodeBox::all(grid));
 }
 
-/// Pixels that it touches, nodes that it raises, and the eight neighbours of both. With a face on an edge of pixels those
-/// beyond are raised too, and the flow stands one farther out.
-std::vector<char> around(const Polygons& outline, const GridGeometry& part) {
-    std::vector<char> marks(static_cast<std::size_t>(part.size()), 0);
-    const auto mark = [&](Index i, Index j) {
-        for (Index b = std::max<Index>(0, j - 1); b <= std::min(part.ny - 1, j + 1); ++b)
-            for (Index a = std::max<Index>(0, i - 1); a <= std::min(part.nx - 1, i + 1); ++a)
-                marks[static_cast<std::size_t>(b * part.nx + a)] = 1;
-    };
-    for_each_pixel_area(part, rings_of(outline), [&](Index i, Index j, double area) {
-        if (area > 0.0) mark(i, j);
-    });
+/// Marks a pixel and its eight neighbours.
+void mark_around(std::vector<char>& marks, const GridGeometry& part, Index i, Index j) {
+    for (Index b = std::max<Index>(0, j - 1); b <= std::min(part.ny - 1, j + 1); ++b)
+        for (Index a = std::max<Index>(0, i - 1); a <= std::min(part.nx - 1, i + 1); ++a)
+            marks[static_cast<std::size_t>(b * part.nx + a)] = 1;
+}
+
+/// Pixels that it touches, nodes that it raises, and the eight neighbours of both. A node's bed is the mean around it, so that
+/// the neighbours of raised nodes are raised as well. A flow that came onto one of these stands on the pixels around it.
+template <class IsWet>
+std::vector<char> around(const Polygons& outline, const GridGeometry& part, const IsWet& is_wet) {
+    std::vector<char> marks(static_cast<std::size_t>(part.size()), 0), foot = marks;
     const std::vector<char> raised = nodes_of_outline(outline, part);
-    for (Index j = 0; j < part.ny; ++j)
-        for (Index i = 0; i < part.nx; ++i)
-            if (raised[static_cast<std::size_t>(j * part.nx + i)]) mark(i, j);
+    const auto for_each_of = [&](const std::vector<char>& of, auto&& f) {
+        for (Index j = 0; j < part.ny; ++j)
+            for (Index i = 0; i < part.nx; ++i)
+                if (of[static_cast<std::size_t>(j * part.nx + i)]) f(i, j);
+    };
+    for_each_of(raised, [&](Index i, Index j) { mark_around(foot, part, i, j); });
+    for_each_pixel_area(part, rings_of(outline), [&](Index i, Index j, double area) {
+        if (area > 0.0) mark_around(marks, part, i, j);
+    });
+    for_each_of(foot, [&](Index i, Index j) {
+        if (is_wet(i, j))
+            mark_around(marks, part, i, j);
+        else
+            marks[static_cast<std::size_t>(j * part.nx + i)] = 1;
+    });
     return marks;
 }
 
@@ -88,9 +100,10 @@ BarrierHit hit_on(const Polygons& outline, const std::vector<ProductRaster>& ras
     const NodeBox box = pixels_around(outline, all);
     if (box.nx < 1 || box.ny < 1) return hit;
     const GridGeometry part = box.of(all);
-    const std::vector<char> marks = around(outline, part);
     const Fields fields{find_product(rasters, "peak_depth"), find_product(rasters, "peak_dynamic_pressure"),
                         find_product(rasters, "arrival_time"), bed != nullptr && bed->geometry == all ? bed : nullptr};
+    const std::vector<char> marks =
+        around(outline, part, [&](Index i, Index j) { return Fields::at(fields.depth, box.i0 + i, box.j0 + j) > 0.0; });
     for (Index j = 0; j < part.ny; ++j)
         for (Index i = 0; i < part.nx; ++i)
             if (marks[static_cast<std::size_t>(j * part.nx + i)])
@@ -129,10 +142,8 @@ void write_barrier_table(const std::filesystem::path& csv, const std::vector<Bar
                          const std::vector<BarrierHit>& hits) {
     expect(hits.size() == summaries.size(), "every barrier has a hit");
     std::string text =
-        "barrier,first_contact [s],peak_force [N],peak_dynamic_pressure [Pa],peak_depth [m],run_up_elevation "
-        "[m],overtopped "
-        "[m3],area "
-        "[m2]";
+        "barrier,first_contact [s],peak_force [N],peak_force_mean_over [s],peak_dynamic_pressure [Pa],peak_depth [m],"
+        "run_up_elevation [m],overtopped [m3],area [m2]";
     for (const char* side : kSides) text += fmt::format(",dynamic_pressure_{0} [Pa],depth_{0} [m]", side);
     text += '\n';
     for (std::size_t n = 0; n < hits.size(); ++n) {
@@ -140,8 +151,8 @@ void write_barrier_table(const std::filesystem::path& csv, const std::vector<Bar
         const BarrierHit& hit = hits[n];
         const double none = BarrierHit::unknown;
         text += s.name + cell(s.first_contact >= 0.0 ? s.first_contact : none) +
-                cell(s.blur > 0.0 ? s.peak_force : none) + cell(hit.pressure) + cell(hit.depth) + cell(s.run_up) +
-                cell(s.overtopped) + cell(hit.area);
+                cell(s.blur > 0.0 ? s.peak_force : none) + cell(s.blur > 0.0 ? s.blur : none) + cell(hit.pressure) +
+                cell(hit.depth) + cell(s.run_up) + cell(s.overtopped) + cell(hit.area);
         for (std::size_t side = 0; side < kSides.size(); ++side)
             text += cell(hit.side_pressure[side]) + cell(hit.side_depth[side]);
         text += '\n';

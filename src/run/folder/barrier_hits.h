@@ -14,8 +14,9 @@ namespace frana {
 /// The sides of a barrier by the directions that they face, in the order of the arrays below.
 inline constexpr std::array<const char*, 4> kSides{"north", "east", "south", "west"};
 
-/// The flow at an outline: on pixels that it touches, nodes that it raises (nodes_of_outline()), and the neighbours of both, since
-/// the flow goes round it. NaN: not reached, or not known.
+/// The flow at an outline: on pixels that it touches, nodes that it raises, and the neighbours of both, since the flow goes
+/// round it. It raises those of nodes_of_outline() and, as the bed is averaged (shallow/THEORY.md section 3), the nodes
+/// next to them, whose neighbours count where the flow came onto them. NaN: not reached, or not known.
 struct BarrierHit {
     static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     double area = unknown;      ///< of the outline, as given [m2]

@@ -13,11 +13,16 @@
 namespace frana {
 namespace {
 
-/// Of those that forces are known of, by name [N].
-std::unordered_map<std::string, double> forces_of(const std::vector<BarrierSummary>& summaries) {
-    std::unordered_map<std::string, double> forces;
+/// The largest force on a barrier [N], and the time that it is the mean over [s].
+struct PeakForce {
+    double force = BarrierHit::unknown, mean_over = BarrierHit::unknown;
+};
+
+/// Of those that forces are known of, by name.
+std::unordered_map<std::string, PeakForce> forces_of(const std::vector<BarrierSummary>& summaries) {
+    std::unordered_map<std::string, PeakForce> forces;
     for (const BarrierSummary& summary : summaries)
-        if (summary.blur > 0.0) forces.emplace(summary.name, summary.peak_force);
+        if (summary.blur > 0.0) forces.emplace(summary.name, PeakForce{summary.peak_force, summary.blur});
     return forces;
 }
 
@@ -29,14 +34,18 @@ bool same_name(const std::string& a, const std::string& b) {
                       [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
-std::vector<Named> results_on(const Polygon& polygon, const std::string& barrier, double force,
+std::vector<Named> results_on(const Polygon& polygon, const std::string& barrier, const PeakForce& force,
                               const std::vector<ProductRaster>& rasters) {
     Polygons one;
     one.parts = {polygon};
     const BarrierHit hit = hit_on(one, rasters);
-    std::vector<Named> results{
-        {"barrier", barrier},        {"peak_force_N", force}, {"peak_dynamic_pressure_Pa", hit.pressure},
-        {"peak_depth_m", hit.depth}, {"hit_s", hit.time},     {"area_m2", hit.area}};
+    std::vector<Named> results{{"barrier", barrier},
+                               {"peak_force_N", force.force},
+                               {"peak_force_mean_over_s", force.mean_over},
+                               {"peak_dynamic_pressure_Pa", hit.pressure},
+                               {"peak_depth_m", hit.depth},
+                               {"hit_s", hit.time},
+                               {"area_m2", hit.area}};
     for (std::size_t side = 0; side < kSides.size(); ++side) {
         results.emplace_back(fmt::format("dynamic_pressure_{}_Pa", kSides[side]), hit.side_pressure[side]);
         results.emplace_back(fmt::format("depth_{}_m", kSides[side]), hit.side_depth[side]);
@@ -74,14 +83,14 @@ ShapeLayer barrier_layer(const std::vector<BarrierSource>& sources, const std::v
     ShapeLayer layer{"barriers", {}};
     if (sources.empty() || rasters.empty()) return layer;
     const std::string& crs = rasters.front().raster.crs_wkt;
-    const std::unordered_map<std::string, double> forces = forces_of(summaries);
+    const std::unordered_map<std::string, PeakForce> forces = forces_of(summaries);
     for (const BarrierSource& source : sources) {
         std::vector<std::string> said_by_the_scene;
         std::size_t n = 0;
         for (AttributedPolygon& polygon : read_attributed_polygons(source.outline, crs, said_by_the_scene)) {
             const std::string name = source.each ? fmt::format("{}_{}", source.name, ++n) : source.name;
             const auto known = forces.find(name);
-            const double force = known == forces.end() ? BarrierHit::unknown : known->second;
+            const PeakForce force = known == forces.end() ? PeakForce{} : known->second;
             add_results(polygon, results_on(polygon.polygon, name, force, rasters));
             layer.shapes.push_back({std::move(polygon.polygon), std::move(polygon.attributes)});
         }

@@ -23,8 +23,8 @@ struct BarrierSource {
 std::vector<BarrierSource> barrier_sources(const CaseFile& file);
 
 /// Layer "barriers": every polygon of every outline with the attributes of its feature, and
-/// - barrier: its name; peak_force_N: the largest horizontal force on the barrier, `peak_force` of run.json, where
-///   forces are known;
+/// - barrier: its name; peak_force_N: the largest horizontal force on the barrier, `peak_force` of run.json, and
+///   peak_force_mean_over_s: the time that it is the mean over, where forces are known;
 /// - peak_dynamic_pressure_Pa (density times speed squared), peak_depth_m: the largest, and hit_s: the earliest
 ///   arrival, at its faces;
 ///   dynamic_pressure_north_Pa, depth_north_m, ... of each side; area_m2 of the polygon. See hit_on().

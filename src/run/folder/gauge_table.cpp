@@ -16,6 +16,11 @@ double largest(const std::vector<double>& values) {
     return most;
 }
 
+/// That of a film at the flow's edge does not count, as in peak_speed.tif.
+double largest_speed(const Table& series, double footprint_depth) {
+    return largest(speeds_that_count(series.column("depth"), series.column("speed"), footprint_depth));
+}
+
 /// "| 12.5 s | 1.3 m | 8.2 m/s |"
 std::string flow_at(const Table& series, double footprint_depth) {
     const std::vector<double>& depth = series.column("depth");
@@ -24,10 +29,18 @@ std::string flow_at(const Table& series, double footprint_depth) {
         first == depth.end()
             ? "not reached"
             : fmt::format("{:.4g} s", series.column("t")[static_cast<std::size_t>(first - depth.begin())]);
-    return fmt::format("| {} | {:.4g} m | {:.4g} m/s |", arrival, largest(depth), largest(series.column("speed")));
+    return fmt::format("| {} | {:.4g} m | {:.4g} m/s |", arrival, largest(depth),
+                       largest_speed(series, footprint_depth));
 }
 
 }  // namespace
+
+std::vector<double> speeds_that_count(const std::vector<double>& depth, std::vector<double> speed,
+                                      double footprint_depth) {
+    for (std::size_t k = 0; k < speed.size(); ++k)
+        if (depth[k] < kSpeedCounts * footprint_depth) speed[k] = 0.0;
+    return speed;
+}
 
 std::string gauge_section(const std::vector<Gauge>& gauges, double footprint_depth,
                           const std::filesystem::path& run_dir) {
@@ -46,8 +59,8 @@ std::string gauge_section(const std::vector<Gauge>& gauges, double footprint_dep
                       "\nThese are values of the series in `gauges/`, which have a row for each step, interpolated "
                       "between the four nodes around the point; `rasters/` has the peaks of whole pixels, which may be "
                       "larger or smaller. Arrival is the first time deeper than {:.4g} m (`output.footprint_depth`). "
-                      "The speed is along the bed.\n\n",
-                      footprint_depth);
+                      "The speed is along the bed, of what is {:.4g} m deep or more.\n\n",
+                      footprint_depth, kSpeedCounts * footprint_depth);
 }
 
 }  // namespace frana

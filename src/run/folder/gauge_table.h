@@ -8,6 +8,13 @@
 
 namespace frana {
 
+/// Speeds count where the flow is this share of the footprint depth or deeper, as in peaks and Status::max_speed [1].
+inline constexpr double kSpeedCounts = 0.1;
+
+/// A gauge's speeds [m/s], 0 where its depth [m] is too small to count.
+std::vector<double> speeds_that_count(const std::vector<double>& depth, std::vector<double> speed,
+                                      double footprint_depth);
+
 /// A section of report.md: place, arrival and largest values of each gauge, from the series in gauges/ that
 /// figures/gauges_flow.png draws. It has arrived once it is deeper than `footprint_depth` [m]. Empty without gauges. A
 /// gauge whose series cannot be read has a row that says so.

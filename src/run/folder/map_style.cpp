@@ -22,8 +22,9 @@ Colormap colours_of(const std::string& name) {
 ColourRange range_of(const ProductRaster& product, const ProductRaster* peak_depth, double limit, Colormap map) {
     std::optional<std::pair<double, double>> given;
     if (product.name.find("damage") != std::string::npos) given = {0.0, 1.0};
-    if (product.name == "bed_change") return colour_range(product.raster.values, 0.0, map, {});  // where it changes
-    const bool thick = product.unit == "m" && map != Colormap::diverging;  // shown where they are thick themselves
+    if (product.name == "bed_change")
+        return colour_range(product.raster.values, 0.0, map, {}, Top::flow);  // where it changes
+    const bool thick = product.unit == "m" && map != Colormap::diverging;     // shown where they are thick themselves
     if (thick)
         return colour_range(product.raster.values, limit, map, given,
                             product.name == "peak_depth" ? Top::flow : Top::percentile);

@@ -49,8 +49,11 @@ std::string heading(const RunRecord& r) {
 
 /// Of two phases each has its own volume: that of the grains is without pores.
 std::string left_text(const RunRecord& r) {
-    // A sum of gains and losses; below zero it is round-off.
-    const auto volume = [](double left) { return fmt::format("{:.6g} m3", std::max(0.0, left)); };
+    // A sum of gains and losses of all that there was: what is below their round-off, or below zero, is none.
+    constexpr double kRoundOff = 1e-12;
+    const RunSummary& s = r.summary;
+    const double least = kRoundOff * (s.first.mass + mass_came_in(s.first, s.last)) / r.density;
+    const auto volume = [&](double left) { return fmt::format("{:.6g} m3", left > least ? left : 0.0); };
     if (r.of_water_alone()) return volume(r.extras.water->left) + " of water";
     if (!r.extras.water) return volume(r.summary.last.mass_left / r.density);
     return volume(r.extras.water->solids_left) + " of grains and " + volume(r.extras.water->left) + " of water";
@@ -125,7 +128,9 @@ std::string results(const RunRecord& r) {
                 fmt::format("{:.6g} s of {:.6g} s, {} steps, {} frames", s.last.time, r.end, s.steps, s.frames));
     text +=
         row("deepest flow", fmt::format("{:.4g} m at t = {:.4g} s", s.extremes.max_depth, s.extremes.max_depth_time));
-    text += row("fastest flow, along the bed",
+    const std::string counts =
+        r.extras.points_apart ? "" : fmt::format(", where {:.3g} m deep or more", kSpeedCounts * r.footprint_depth);
+    text += row("fastest flow, along the bed" + counts,
                 fmt::format("{:.4g} m/s at t = {:.4g} s", s.extremes.max_speed, s.extremes.max_speed_time));
     text += row("largest dynamic pressure, density times speed squared",
                 fmt::format("{:.4g} kPa", 1e-3 * r.peak_dynamic_pressure));
@@ -337,6 +342,9 @@ std::string mean_forces(const RunRecord& r, const std::vector<std::size_t>& show
     for (const std::size_t n : shown) {
         const BarrierSummary& b = r.barriers[n];
         if (b.blur <= 0.0) continue;
+        if (b.peak_force > 0.0)
+            rows += fmt::format("| {} | {:.4g} s, as in `barriers.csv` | {:.4g} N | {:.4g} s | - | - |\n", b.name,
+                                b.blur, b.peak_force, b.peak_force_time);
         for (const MeanForce& m : b.means) {
             if (b.first_contact < 0.0 && !(m.largest > 0.0)) continue;  // nothing ever pressed on it
             const Vec3 force = without_round_off(m.force), moment = without_round_off(m.moment);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "observe/table.h"
 #include "run/folder/run_film.h"
 #include "vtk_io/figures/figure_3d.h"
 #include "vtk_io/figures/film.h"
@@ -44,6 +45,15 @@ public:
         return count() - 1;
     }
 
+    /// The output midway from the first with points to `last`.
+    Index midway(Index last) const {
+        Index first = last;
+        for (Index number = 0; number < last && first == last; ++number)
+            if (moment(number).typical_size > 0.0) first = number;
+        const Index middle = (first + last) / 2;
+        return moment(middle).typical_size > 0.0 ? middle : last;
+    }
+
     /// The output with points and with the largest horizontal load on one barrier; nothing without any.
     std::optional<Index> hardest() const {
         double most = 0.0;
@@ -76,6 +86,8 @@ public:
         figure.footer = figure.moment.typical_size > 0.0
                             ? fmt::format("points of {:.2g} m; {}", figure.moment.typical_size, source_.footer)
                             : source_.footer;
+        if (const BarrierSolid* const barrier = figure.moment.most_loaded())
+            figure.struck = struck_text(static_cast<std::size_t>(barrier->number), time(number));
         figure.width = source_.width;
         figure.height = std::max(source_.width * 7 / 10, 300);
         return figure;
@@ -84,6 +96,31 @@ public:
     int digits() const { return decimals_of(times_); }
 
 private:
+    /// "pressure on a, seen along its load; force 3160 kN, mean over 0.2 s": the force is that of the barrier's table.
+    std::string struck_text(std::size_t barrier, double time) const {
+        if (barrier >= source_.barriers.size()) return "pressure on the barrier, seen along its load";
+        const std::string& name = source_.barriers[barrier].name;
+        std::string text = fmt::format("pressure on {}, seen along its load", name);
+        const auto over = source_.mean_over.find(name);
+        if (over == source_.mean_over.end()) return text;
+        try {
+            const Table table = read_table(source_.run_dir / "barriers" / (name + ".csv"));
+            const std::vector<double>& t = table.column("t");
+            constexpr double kDigits = 1e-9;  // texts of a time differ in their last digits
+            const auto row = std::find_if(t.begin(), t.end(), [&](double known) {
+                return std::abs(known - time) <= kDigits * std::max(1.0, time);
+            });
+            if (row == t.end()) return text;
+            const double force = 1e-3 * table.column("mean_force")[static_cast<std::size_t>(row - t.begin())];
+            if (!std::isfinite(force)) return text;
+            return fmt::format("{}; force {} kN, mean over {:.3g} s", text,
+                               force < 10.0 ? fmt::format("{:.2g}", force) : fmt::format("{:.0f}", force),
+                               over->second);
+        } catch (const UserError&) {  // more barriers than have tables
+            return text;
+        }
+    }
+
     /// At that time; before the first loads, and between, the faces that are known without any.
     std::vector<BarrierSolid> barriers(double time) const {
         if (loads_.empty()) return {};
@@ -112,16 +149,20 @@ struct Wanted {
     bool close = false;  ///< the barrier and what is about it, not all of the flow
 };
 
+/// The hardest load from nearby, and all of the flow at the end; where these are one output, all of it midway there.
 std::vector<Wanted> wanted_moments(const Run3d& run, const FigureSource& source) {
     std::vector<Wanted> wanted;
-    if (const auto hardest = run.hardest())
+    const std::optional<Index> hardest = run.hardest();
+    if (hardest)
         wanted.push_back({*hardest, "impact",
                           fmt::format("at {:.4g} s, the output with the largest load on a barrier", run.time(*hardest)),
                           true});
-    const Index last = run.last();
-    wanted.push_back({last, "points",
-                      last + 1 == run.count() ? "at the end" : fmt::format("at {:.4g} s, the last", run.time(last)),
-                      false});
+    const Index last = run.last(), middle = last == hardest ? run.midway(last) : last;
+    const std::string when =
+        middle != last            ? fmt::format("at {:.4g} s, midway through the outputs with points", run.time(middle))
+        : last + 1 == run.count() ? "at the end"
+                                  : fmt::format("at {:.4g} s, the last output with points", run.time(last));
+    wanted.push_back({middle, "points", when, false});
     if (source.time) {
         const Index number = run.nearest(*source.time);
         const std::string moment = fmt::format("{:.6g}", run.time(number));

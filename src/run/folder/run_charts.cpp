@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "observe/table.h"
+#include "run/folder/gauge_table.h"
 #include "vtk_io/figures/chart_figure.h"
 
 namespace frana {
@@ -188,7 +189,9 @@ ChartFigure gauge_chart(const FigureSource& source) {
     for (const Gauge& gauge : source.gauges) {
         const Table table = read_table(source.run_dir / "gauges" / (gauge.name + ".csv"));
         depth.curves.push_back(curve(gauge.name, table.column("t"), table.column("depth")));
-        speed.curves.push_back(curve(gauge.name, table.column("t"), table.column("speed")));
+        speed.curves.push_back(
+            curve(gauge.name, table.column("t"),
+                  speeds_that_count(table.column("depth"), table.column("speed"), source.footprint_depth)));
     }
     figure.panels = {depth, speed};
     return figure;
@@ -206,11 +209,22 @@ ChartFigure section_chart(const FigureSource& source) {
     return figure;
 }
 
+/// From zero on, unless the values begin far from it. Tables have a row for each step, and none for what is before.
+std::optional<std::pair<double, double>> from_zero(const Column& x) {
+    constexpr double kFar = 0.35;  // of the axis, as for heights in chart_figure.cpp
+    if (x.empty() || !(x.back() > 0.0) || !(x.front() > 0.0) || x.front() > kFar * x.back()) return std::nullopt;
+    return std::pair(0.0, x.back());
+}
+
 ChartFigure bed_change_chart(const FigureSource& source, const Table& table) {
     ChartFigure figure = chart(source, "change of the ground along the path", "distance along the path [m]");
     figure.height = std::max(source.width * 4 / 5, 300);
     const Column& distance = table.column("distance");
-    ChartPanel eroded{"eroded [m3]", {}, false, {}, 1.0}, deposited{"deposited [m3]", {}, false, {}, 1.0},
+    figure.x_range = from_zero(distance);
+    const double step = distance.size() > 1 ? distance[1] - distance[0] : 0.0;
+    const std::string of = step > 0.0 ? fmt::format(" per {:.4g} m", step) : "";
+    ChartPanel eroded{"eroded" + of + " [m3]", {}, false, {}, 1.0},
+        deposited{"deposited" + of + " [m3]", {}, false, {}, 1.0},
         balance{"deposited less eroded so far [m3]", {}, false, {}, 1.4};
     for (const std::string whose : {"simulated", "surveyed"}) {
         eroded.curves.push_back(curve(whose, distance, table.column(whose + "_eroded")));
@@ -225,6 +239,7 @@ ChartFigure barrier_chart(const FigureSource& source, const std::string& name, c
     ChartFigure figure = chart(source, "barrier " + name, "time [s]");
     figure.height = std::max(source.width * 4 / 5, 300);
     const Column& t = table.column("t");
+    figure.x_range = from_zero(t);
     ChartPanel mean{"force [N]", {}, false, {}, 1.4}, parts{"force of a step [N]", {}, false, {}, 1.0},
         up{"run-up [m]", {}, false, {}, 0.7}, over{"over it [m3]", {}, false, {}, 0.7};
     up.curves = {curve("highest so far", t, table.column("run_up"))};
@@ -232,7 +247,9 @@ ChartFigure barrier_chart(const FigureSource& source, const std::string& name, c
     if (has_finite(table, "run_up")) figure.panels.push_back(up);
     if (has_values(table, "overtopped")) figure.panels.push_back(over);
     if (!table.has("fx")) return figure;  // columns alone: no forces
-    mean.curves = {curve("horizontal, mean", t, table.column("mean_force"))};
+    const auto over_s = source.mean_over.find(name);
+    const std::string of = over_s == source.mean_over.end() ? "" : fmt::format(" over {:.3g} s", over_s->second);
+    mean.curves = {curve("horizontal, mean" + of, t, table.column("mean_force"))};
     parts.curves = {curve("east", t, table.column("fx")), curve("north", t, table.column("fy")),
                     curve("up", t, table.column("fz"))};
     figure.panels.insert(figure.panels.begin(), {mean, parts});

@@ -95,7 +95,8 @@ void add_change_map(const FigureSource& source, Gallery& gallery) {
                             map.outline_field[k] = std::max(map.outline_field[k], 2.0 * source.footprint_depth);
                     map.outline_label = "change of the bed, or flow of [m]";
                     map.colormap = Colormap::diverging;
-                    const ColourRange range = colour_range(map.field, 0.0, Colormap::diverging, {});
+                    // A deep scar or deposit would leave what the flow eroded without colour.
+                    const ColourRange range = colour_range(map.field, 0.0, Colormap::diverging, {}, Top::flow);
                     map.range = {range.low, range.high};
                     return render_map(map, png, why_not);
                 });

@@ -2,6 +2,7 @@
 // The pictures of a run: drawn at its end, and again by `frana figures`. Functions named add_... put one into a gallery; the
 // source has to stay until it is drawn.
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,6 +36,8 @@ struct FigureSource {
     std::string front_origin = "the release's centre";
     /// Names of barriers.
     std::vector<std::string> never_hit;
+    /// The time that `mean_force` in a barrier's table is the mean over, by its name, where forces are known [s].
+    std::map<std::string, double> mean_over;
     bool in_3d = false;                    ///< the case has a stage of 3D points
     std::vector<BarrierTop> barrier_tops;  ///< in the case's order
     std::vector<Barrier> barriers;         ///< with what they stand on

@@ -303,21 +303,22 @@ std::vector<std::string> files_made(const fs::path& run_dir) {
 
 void require_room_for_run(const fs::path& run_dir, const std::vector<fs::path>& inputs, Overwrite overwrite) {
     const std::vector<fs::path> found = files_in_the_way(run_dir, inputs);
+    const OtherFiles others = other_files(run_dir);
+    const auto stands = std::find_if(found.begin(), found.end(), [&](const fs::path& file) {
+        return has_one_name(run_dir, file) && is_others(others, run_dir, file);
+    });
+    if (stands != found.end())  // --overwrite is no way out
+        throw UserError(
+            fmt::format("{}: found a file that no run left there, by the list in run.json; expected a "
+                        "folder without files of such names; choose another one with --out, or move it "
+                        "away",
+                        stands->string()));
     if (overwrite == Overwrite::no && !found.empty())
         throw UserError(
             fmt::format("{}: found {}, which a run would replace; expected a folder without a run's files; "
                         "choose another one with --out, give --overwrite to replace an earlier run, or "
                         "--resume to go on with it",
                         run_dir.string(), names_of(run_dir, found)));
-    if (overwrite == Overwrite::no) return;
-    const OtherFiles others = other_files(run_dir);
-    for (const fs::path& file : found)
-        if (has_one_name(run_dir, file) && is_others(others, run_dir, file))
-            throw UserError(
-                fmt::format("{}: found a file that no run left there, by the list in run.json; expected a "
-                            "folder without files of such names; choose another one with --out, or move it "
-                            "away",
-                            file.string()));
 }
 
 void require_no_others(const fs::path& dir, const std::string& mark, const std::vector<std::string>& names,

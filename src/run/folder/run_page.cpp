@@ -107,7 +107,7 @@ std::optional<PageDrape> drape_of(const FigureSource& source, const DrapeRule& r
     }
     if (!any) return {};
     const ColourRange range = colour_range(drape.raster.values, bed ? 0.0 : kAll, rule.colours, {},
-                                           drape.name == "peak_depth" ? Top::flow : Top::percentile);
+                                           bed || drape.name == "peak_depth" ? Top::flow : Top::percentile);
     drape.low = range.low, drape.high = range.high;
     drape.above = range.more_above, drape.below = range.more_below;
     return drape;

@@ -205,10 +205,11 @@ double taken_again(const RunRecord& record) {
 
 double lies_behind(const RunRecord& record) { return record.summary.last.bed.deposited - taken_again(record); }
 
-/// "1.2 % of the mass still moves, the fastest at 3.4 m/s".
+/// "1.2 % of the mass is still faster than 0.1 m/s along the map, the fastest, films too, has 3.4 m/s".
 std::string motion_text(const RunSummary& s) {
-    return fmt::format("{:.3g} % of the mass {} faster than {:.2g} m/s along the map, the fastest has {:.3g} m/s",
-                       100.0 * s.motion.share(), s.motion.share() > 0.0 ? "is still" : "is", s.slow, s.motion.fastest);
+    return fmt::format(
+        "{:.3g} % of the mass {} faster than {:.2g} m/s along the map, the fastest, films too, has {:.3g} m/s",
+        100.0 * s.motion.share(), s.motion.share() > 0.0 ? "is still" : "is", s.slow, s.motion.fastest);
 }
 
 /// Whether a rule, or the end of the time, stopped what was still in motion.
