@@ -14,7 +14,7 @@ struct Budget {
     double mass_error = 0.0;  ///< (m + m_left + m_bed - m_0 - m_in) / (m_0 + m_in), m_0 with that of the bed [1]
     double bed_error = 0.0;   ///< of the bed alone, over what it had at the start and was given [1]
     std::array<double, 2> momentum_residual{};  ///< P + P_left - P_0 - impulse [kg m/s]
-    double energy_residual = 0.0;               ///< (K + E_p + E_s + D + E_left) - (K_0 + E_p0) [J]
+    double energy_residual = 0.0;               ///< (K + E_p + E_s + D + E_left - E_bed) - (the same at the start) [J]
 };
 
 inline Budget budget(const Status& first, const Status& now) {

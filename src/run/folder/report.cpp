@@ -205,7 +205,8 @@ std::string budgets(const RunRecord& r) {
         text += fmt::format("| momentum {} [kg m/s] | {:.4g} | {:.4g} (impulse {:.4g}) | {}{:.4g} | {:.1e} |\n",
                             axis == 0 ? "x" : "y", s.first.momentum[axis], s.last.momentum[axis], s.last.impulse[axis],
                             net, s.last.momentum_left[axis], b.momentum_residual[axis]);
-    text += fmt::format("| energy [J] | {:.5g} | {:.5g} | {}{:.4g} | {:.2e} |\n", s.first.kinetic + s.first.potential,
+    text += fmt::format("| energy [J] | {:.5g} | {:.5g} | {}{:.4g} | {:.2e} |\n",
+                        s.first.kinetic + s.first.potential + s.first.stored,
                         s.last.kinetic + s.last.potential + s.last.stored, net, s.last.energy_left, b.energy_residual);
     if (const double given = s.last.bed.energy - s.first.bed.energy; given != 0.0)
         text += fmt::format("| of it the bed gave [J] | | {:.5g} | | |\n", given);

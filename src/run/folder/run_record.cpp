@@ -103,6 +103,7 @@ Json energy_json(const RunSummary& s) {
               {"numerical", s.last.in_3d.numerical}}},
             {"potential_initial", s.first.potential},
             {"kinetic_initial", s.first.kinetic},
+            {"stored_initial", s.first.stored},
             {"residual", budget(s.first, s.last).energy_residual}};
 }
 
