@@ -1,6 +1,7 @@
 // Barriers as polygons for a GIS: attributes of the input, and what the run did to them, read back by GDAL.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -293,6 +294,29 @@ TEST_CASE("The depth at a wall is that of the pile before it", "[barriers][resul
     const Layer layer(village.path() / "run" / "results.gpkg", "barriers");
     const OGRFeatureUniquePtr wall(layer.get().GetNextFeature());
     CHECK(wall->GetFieldAsDouble("depth_west_m") == Approx(pile).epsilon(1e-6));  // rasters are in single precision
+}
+
+// A film on the raised nodes is no flow that came onto them: what passes two nodes beside a house does not stand at it.
+TEST_CASE("A house is not hit by a flow two cells beside it with a film between", "[barriers][results]") {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const GridGeometry grid{40, 20, 2.5, 2.5, 5.0};
+    std::vector<ProductRaster> rasters;
+    for (const char* name : {"peak_depth", "peak_dynamic_pressure", "arrival_time"})
+        rasters.push_back({name, "", "", Raster::filled(grid, kNone)});
+    const auto set = [&](Index i, double depth, double pressure, double arrival) {
+        for (Index j = 0; j < grid.ny; ++j)
+            rasters[0].raster.at(i, j) = depth, rasters[1].raster.at(i, j) = pressure,
+                                    rasters[2].raster.at(i, j) = arrival;
+    };
+    for (Index i = 0; i < 18; ++i) set(i, 6.0, 4e5, 10.0);  // up to x = 90 m
+    set(18, 0.001, 4e2, kNone);                             // a film up to 95 m, never as deep as a footprint
+    Polygons house;
+    house.parts = {Polygon{{{{100, 40}, {110, 40}, {110, 50}, {100, 50}, {100, 40}}}}};
+    const BarrierHit passed = hit_on(house, rasters);
+    CHECK_FALSE(passed.depth > 0.1);
+    CHECK(std::isnan(passed.time));
+    set(18, 0.2, 1e3, 12.0);  // the flow came onto it, and stands on the pixels around it
+    CHECK(hit_on(house, rasters).depth == 6.0);
 }
 
 TEST_CASE("A force on a barrier has the time that it is the mean over, wherever it is told", "[barriers][results]") {

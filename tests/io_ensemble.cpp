@@ -268,9 +268,9 @@ TEST_CASE("runs that fail count by their weight", "[ensemble]") {
     // A third of the rows, and a fortieth of the weight.
     const Outcome light = pond.frana("ensemble many.toml --out light");
     CHECK(light.code == 0);
-    CHECK_THAT(
-        light.out,
-        Contains("1 with 0.025 of the weight failed: of a probability p between 0.975 p and that and 0.025 may be"));
+    CHECK_THAT(light.out, Contains("1 with 0.025 of the weight failed: had these exceeded a threshold nowhere, a "
+                                   "probability p of the maps would "
+                                   "be 0.975 p, and had they exceeded it everywhere, 0.975 p + 0.025"));
     CHECK(Json::parse(text_of(pond.path("light/ensemble.json")))["failed_share"].get<double>() == Approx(0.025));
     for (const double p : pond.map("light", "probability_peak_depth_1").values)
         CHECK(p == Approx(29.0 / 39.0).epsilon(1e-6));

@@ -54,9 +54,8 @@ TEST_CASE("The least case needs a DEM, a release with depth and an end, and the 
 
 TEST_CASE("An empty case lists everything that it lacks", "[case]") {
     const std::vector<std::string> expected = {
-        "case.toml:1: release: not given; expected at least one [[release]]; add [[release]] with outline "
-        "and depth "
-        "below",
+        "case.toml:1: release: not given; expected at least one [[release]] or [[inflow]], or free water with "
+        "water.level; add [[release]] with outline and depth below",
         "case.toml:1: terrain.dem: not given; expected the name of a file in quotes, elevation model: any "
         "GDAL raster, "
         "CRS projected in metres; add dem = ... under [terrain]",

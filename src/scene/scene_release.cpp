@@ -146,9 +146,15 @@ private:
             return sum.value();
         };
         const auto& [x0, y0, x1, y1] = *box;
-        const Raster whole =
-            reader_.read_raster(file, {x0 + slack, y0 + slack, x1 - slack, y1 - slack}, bed_.crs_wkt, said_already);
-        return std::max(0.0, volume(whole) - volume(part));
+        constexpr double kAtOnce = 4e6;  // [pixels]; the raster may be of a whole country
+        const double cell = part.geometry.cell, within = 0.25 * cell;
+        const double strip = std::max(1.0, std::floor(kAtOnce * cell / (x1 - x0))) * cell;
+        double whole = 0.0;
+        for (double y = y0; y < y1 - slack; y += strip)
+            whole += volume(
+                reader_.read_raster(file, {x0 + within, y + within, x1 - within, std::min(y + strip, y1) - within},
+                                    bed_.crs_wkt, said_already));
+        return std::max(0.0, whole - volume(part));
     }
 
     Polygons outline() {
@@ -214,7 +220,9 @@ private:
         } else if (!depth_of_features_ && is_file("depth")) {
             reader_.require_metres(case_.path(key("depth")));
             release.depth_field = raster(case_.path(key("depth")));
-            if (!release.outline) release.left_out = volume_beyond(case_.path(key("depth")), *release.depth_field);
+            // Of a thickness normal to the bed the volume hangs on the slope, which is not known beyond the terrain.
+            if (!release.outline && !normal)
+                release.left_out = volume_beyond(case_.path(key("depth")), *release.depth_field);
             const NodeMarks wanted = claimed(release, release.depth_field->geometry);
             remark_on_gaps(*release.depth_field, wanted, place("depth"), log_);
             judge_negative(*release.depth_field, wanted);

@@ -89,7 +89,8 @@ void Prism::find_box() {
     high_.z() = top_.values.empty() ? level_ : highest_top();
 }
 
-/// Of the nodes around the outline's box: between nodes a top is no higher than they.
+/// Of the nodes around the outline's box: between nodes a top is no higher than they. Beyond the outer nodes it goes on as
+/// it slopes there, and is highest at a corner of the outline.
 double Prism::highest_top() const {
     const GridGeometry& g = top_.geometry;
     const auto nodes = [&](double least, double most, double start, Index count) {
@@ -103,6 +104,7 @@ double Prism::highest_top() const {
     double highest = -kInfinity;
     for (Index j = j0; j <= j1; ++j)
         for (Index i = i0; i <= i1; ++i) highest = std::max(highest, top_.at(i, j));
+    for (const Edge& edge : edges_) highest = std::max(highest, top_at(edge.from));
     return highest;
 }
 

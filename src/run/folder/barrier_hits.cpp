@@ -102,8 +102,10 @@ BarrierHit hit_on(const Polygons& outline, const std::vector<ProductRaster>& ras
     const GridGeometry part = box.of(all);
     const Fields fields{find_product(rasters, "peak_depth"), find_product(rasters, "peak_dynamic_pressure"),
                         find_product(rasters, "arrival_time"), bed != nullptr && bed->geometry == all ? bed : nullptr};
-    const std::vector<char> marks =
-        around(outline, part, [&](Index i, Index j) { return Fields::at(fields.depth, box.i0 + i, box.j0 + j) > 0.0; });
+    // A film does not make the flow beyond it one that stands here.
+    const ProductRaster* const came = fields.arrival != nullptr ? fields.arrival : fields.depth;
+    const std::vector<char> marks = around(
+        outline, part, [&](Index i, Index j) { return std::isfinite(Fields::at(came, box.i0 + i, box.j0 + j)); });
     for (Index j = 0; j < part.ny; ++j)
         for (Index i = 0; i < part.nx; ++i)
             if (marks[static_cast<std::size_t>(j * part.nx + i)])
