@@ -30,8 +30,10 @@ void add_laws(Table& table) {
             row = choice(name.c_str(), key.choices, key.choices.front().c_str(), key.meaning);
         else if (key.missing == laws::Missing::usual)
             row.fallback = key.usual;
-        const bool by_case = key.missing == laws::Missing::none;  // a case without stage.law may have it too
-        table.push_back(by_case ? of_3d(std::move(row), key.absent) : with(std::move(row), law, used_by, needed_by));
+        if (key.missing == laws::Missing::none)  // a case without stage.law may have it too
+            table.push_back(of_3d(row, key.absent));
+        else
+            table.push_back(with(row, law, used_by, needed_by));
     }
 }
 
