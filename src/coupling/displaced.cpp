@@ -62,8 +62,8 @@ void Displaced::move(const DepartedPoint& point, double share, Index node) {
     if (cell.depth < kShallow * height) cell.load.lift += mass * (height - cell.depth);
 }
 
-/// The nodes beside a node, or -1.
-std::array<Index, 4> Displaced::beside(Index node) const {
+/// The nodes adjacent to a node, or -1.
+std::array<Index, 4> Displaced::adjacent_to(Index node) const {
     const Index i = node % grid_.nx, j = node / grid_.nx;
     return {i > 0 ? node - 1 : -1, i + 1 < grid_.nx ? node + 1 : -1, j > 0 ? node - grid_.nx : -1,
             j + 1 < grid_.ny ? node + grid_.nx : -1};
@@ -78,8 +78,8 @@ double Displaced::rise_passing(const Cell& from, const Cell& to) {
     return is_up ? std::min(more, from.surface - to.surface + more) : more;
 }
 
-/// The number of the cell of a node beside a cell, or -1. Dry ground is reached from a cell that has too much.
-Index Displaced::open_beside(std::size_t cell, Index node) {
+/// The number of the cell adjacent to a cell, or -1. Dry ground is reached from a cell that has too much.
+Index Displaced::open_adjacent(std::size_t cell, Index node) {
     if (node < 0) return -1;
     const Index there = number_[static_cast<std::size_t>(node)];
     if (there >= 0 || !cells_[cell].is_high()) return there;
@@ -92,8 +92,8 @@ Index Displaced::open_beside(std::size_t cell, Index node) {
 double Displaced::pass(std::size_t from, double least, std::vector<Index>& loaded) {
     constexpr double kQuarter = 0.25;
     double most = 0.0;
-    for (const Index node : beside(cells_[from].node)) {
-        const Index number = open_beside(from, node);
+    for (const Index node : adjacent_to(cells_[from].node)) {
+        const Index number = open_adjacent(from, node);
         if (number < 0) continue;
         Cell &giver = cells_[from], &taker = cells_[static_cast<std::size_t>(number)];
         const double rise = kQuarter * rise_passing(giver, taker);

@@ -62,8 +62,8 @@ private:
         bool is_laid() const { return load.mass > own; }
     };
     Index cell_of(Index node, double ground);
-    Index open_beside(std::size_t cell, Index node);
-    std::array<Index, 4> beside(Index node) const;
+    Index open_adjacent(std::size_t cell, Index node);
+    std::array<Index, 4> adjacent_to(Index node) const;
     double pass(std::size_t from, double least, std::vector<Index>& loaded);
     static double rise_passing(const Cell& from, const Cell& to);
 
