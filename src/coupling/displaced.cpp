@@ -10,7 +10,7 @@ namespace {
 constexpr double kRise = 0.04;
 constexpr int kMostSteps = 2000;  // reach grows with the root of them, to some sixty cells
 // Of the first rise: what passes when nothing spreads any more, and what is not worth passing.
-constexpr double kStill = 1e-5, kNothing = 1e-9;
+constexpr double kStill = 1e-5, kNothing = 1e-7;
 
 }  // namespace
 
@@ -20,9 +20,7 @@ void Displaced::Load::add(const Load& from, double share) {
     momentum += share * from.momentum;
 }
 
-bool Displaced::Cell::is_high() const {
-    return rise() > kRise * std::max(0.0, depth) && load.mass * rise() > load.lift;
-}
+bool Displaced::Cell::is_high() const { return rise > kRise * std::max(0.0, depth) && load.mass * rise > load.lift; }
 
 /// The number of a node's cell, opened if it is not there. Cells at the sides are halves.
 Index Displaced::cell_of(Index node, double ground) {
@@ -33,7 +31,7 @@ Index Displaced::cell_of(Index node, double ground) {
         return count > 1 && (k == 0 || k + 1 == count) ? 0.5 * grid_.cell : grid_.cell;
     };
     Cell& cell = cells_.emplace_back();
-    cell.node = node, cell.surface = ground;
+    cell.node = node, cell.surface = ground, cell.adjacent = adjacent_to(node);
     cell.per_height = density_ * width(node % grid_.nx, grid_.nx) * width(node / grid_.nx, grid_.ny);
     return number;
 }
@@ -56,7 +54,8 @@ void Displaced::move(const DepartedPoint& point, double share, Index node) {
     constexpr double kShallow = 0.5;  // of the height where the point was
     Cell& cell = cells_[static_cast<std::size_t>(cell_of(node, ground_(node)))];
     const double mass = share * point.mass, height = point.position.z() - (cell.surface - cell.depth);
-    cell.load.mass += mass, cell.load.energy += share * point.energy;
+    cell.load.mass += mass, cell.rise = cell.load.mass / cell.per_height;
+    cell.load.energy += share * point.energy;
     cell.load.momentum += mass * point.velocity.head<2>();
     cell.load.level += mass * cell.surface;
     if (cell.depth < kShallow * height) cell.load.lift += mass * (height - cell.depth);
@@ -72,7 +71,8 @@ std::array<Index, 4> Displaced::adjacent_to(Index node) const {
 /// By how much one cell's load would rise over another's, as far as it may flow there [m]. Nothing goes up. Where what
 /// stays is higher than where the load came from, by more than a wave, the surfaces with their loads count too.
 double Displaced::rise_passing(const Cell& from, const Cell& to) {
-    const double more = from.rise() - to.rise();
+    const double more = from.rise - to.rise;
+    if (!(more > 0.0)) return 0.0;
     const bool is_up =
         !(to.own > 0.0) || to.surface * from.load.mass > from.load.level + kRise * to.depth * from.load.mass;
     return is_up ? std::min(more, from.surface - to.surface + more) : more;
@@ -84,7 +84,7 @@ Index Displaced::open_adjacent(std::size_t cell, Index node) {
     const Index there = number_[static_cast<std::size_t>(node)];
     if (there >= 0 || !cells_[cell].is_high()) return there;
     const double ground = ground_(node);
-    return ground < cells_[cell].surface + cells_[cell].rise() ? cell_of(node, ground) : -1;
+    return ground < cells_[cell].surface + cells_[cell].rise ? cell_of(node, ground) : -1;
 }
 
 /// What goes on from a cell in a step, where it raises more than `least`. A quarter over each of four borders is all of
@@ -92,7 +92,8 @@ Index Displaced::open_adjacent(std::size_t cell, Index node) {
 double Displaced::pass(std::size_t from, double least, std::vector<Index>& loaded) {
     constexpr double kQuarter = 0.25;
     double most = 0.0;
-    for (const Index node : adjacent_to(cells_[from].node)) {
+    const std::array<Index, 4> adjacent = cells_[from].adjacent;
+    for (const Index node : adjacent) {
         const Index number = open_adjacent(from, node);
         if (number < 0) continue;
         Cell &giver = cells_[from], &taker = cells_[static_cast<std::size_t>(number)];
@@ -112,7 +113,7 @@ int Displaced::spread() {
     for (std::size_t n = 0; n < cells_.size(); ++n) {
         if (!(cells_[n].load.mass > 0.0)) continue;
         loaded.push_back(static_cast<Index>(n));
-        first = std::max(first, cells_[n].rise());
+        first = std::max(first, cells_[n].rise);
     }
     int step = 0;
     for (double most = first; step < kMostSteps && most > kStill * first; ++step) {
@@ -123,6 +124,7 @@ int Displaced::spread() {
         for (const Index n : loaded) {
             Cell& cell = cells_[static_cast<std::size_t>(n)];
             cell.load.add(cell.change, 1.0), cell.change = {};
+            cell.rise = cell.load.mass / cell.per_height;
         }
     }
     return step;
@@ -155,7 +157,7 @@ std::vector<DepartedPoint> Displaced::laid(double time) const {
             for (const double dy : {-kQuarter, kQuarter}) {
                 const double x = grid_.x(i) + dx * grid_.cell, y = grid_.y(j) + dy * grid_.cell;
                 point.position = {std::clamp(x, grid_.x0, grid_.x_max()), std::clamp(y, grid_.y0, grid_.y_max()),
-                                  cell.surface + kHalf * cell.rise()};
+                                  cell.surface + kHalf * cell.rise};
                 points.push_back(point);
             }
     }

@@ -54,10 +54,10 @@ private:
         double surface = 0.0, depth = 0.0;  ///< of that [m]
         double per_height = 0.0;            ///< mass of a layer [kg/m]
         Load load;
+        Load change;                      ///< in a step
+        double rise = 0.0;                ///< of the load [m]
+        std::array<Index, 4> adjacent{};  ///< nodes, or -1
 
-        Load change;  ///< in a step
-
-        double rise() const { return load.mass / per_height; }
         bool is_high() const;
         bool is_laid() const { return load.mass > own; }
     };
