@@ -160,11 +160,15 @@ double StagedRun::share_above_ramp(const DepartedPoint& point, const Vec2& x) co
 }
 
 /// At the end of the stage all points stand where they are. Of those on the ramp of a barrier the part below it is
-/// moved to the nearest cell before it, and spreads from there.
+/// moved to the nearest cell before it, and spreads from there. A cell that holds points goes before a dry one.
 void StagedRun::clear_ramps() {
     const GridGeometry& g = scene_.bed.geometry;
     const Flow& flow = columns_->flow();
-    Displaced displaced(g);
+    const auto is_open = [&](Index i, Index j) { return !is_raised(i, j) && flow.bed.exit[flow.grid.at(i, j)] == 0; };
+    Displaced displaced(g, scene_.density, [&](Index node) {
+        const Index i = node % g.nx, j = node / g.nx;
+        return is_open(i, j) ? bed_below(scene_.bed, g.x(i), g.y(j)) : std::numeric_limits<double>::quiet_NaN();
+    });
     const double time = points_->status().time;
     const auto now = [&](const DepartedPoint& point) {
         return where_allowed(point, point.position.head<2>() + (time - point.time) * point.velocity.head<2>());
@@ -190,8 +194,9 @@ void StagedRun::clear_ramps() {
         const Vec2 x = now(point);
         const double above = share_above_ramp(point, x);
         if (above < 1.0) {
-            const std::optional<Vec2> edge =
+            std::optional<Vec2> edge =
                 edge_before(point, x, [&](Index i, Index j) { return displaced.holds(j * g.nx + i); });
+            if (!edge) edge = edge_before(point, x, is_open);
             if (edge) {
                 displaced.move(point, 1.0 - above, node_at(*edge));
                 point.mass *= above, point.energy *= above;
@@ -206,6 +211,8 @@ void StagedRun::clear_ramps() {
         const Vec2 x = now(point);
         returning_.push_back(on_raised(x) ? point : displaced.joined(point, node_at(x)));
     }
+    const std::vector<DepartedPoint> laid = displaced.laid(time);
+    returning_.insert(returning_.end(), laid.begin(), laid.end());
     returning_.insert(returning_.end(), stay.begin(), stay.end());
 }
 
