@@ -1,4 +1,6 @@
 // A comparison as a person makes it: a run on disk, files of a survey, the program, what it leaves.
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -123,8 +125,9 @@ TEST_CASE("compare leaves the contract's scores, a page and a picture, and they 
 
     const std::string page = text_of(slope.run_dir() / "compare.md");
     CHECK_THAT(page, Contains("## Against the survey") && Contains("| IoU"));
-    REQUIRE(hit + beyond < 85 * 70);  // so the difference is below zero
-    CHECK_THAT(page, Contains("| area difference [%] | "));
+    REQUIRE(hit + beyond < 85 * 70);  // so this also tells that the difference has no sign
+    const double difference = 100.0 - 100.0 * (hit + beyond) / (85 * 70);
+    CHECK_THAT(page, Contains(fmt::format("| area difference [%] | {:.1f} |", difference)));
     CHECK_THAT(done.out, Contains("| IoU") && Contains("compare.json"));
     if (no_renderer_reason().empty()) {
         CHECK(fs::file_size(slope.run_dir() / "figures" / "compare.png") > 1000);

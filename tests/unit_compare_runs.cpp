@@ -95,7 +95,9 @@ TEST_CASE("Beyond the end of a path only what lies in front of it counts") {
     const auto place = [&](double x, double y) { return place_along(bend, {x, y}).place; };
     CHECK(place(110, 140) == Approx(240));
     CHECK(place(139, 140) == Approx(240));  // not yet 45 degrees off
-    CHECK(place(141, 140) == Approx(200));
+    CHECK(place(141, 140) == Approx(239));  // less by what it lies farther aside than ahead
+    CHECK(place(180, 140) == Approx(200));
+    CHECK(place(190, 140) == Approx(200));
     CHECK(place_along(bend, {141, 140}).off_end);
     CHECK_FALSE(place_along(bend, {110, 140}).off_end);
     // A path that comes back at its end: its last segment's extension runs over the first ones.
@@ -107,6 +109,19 @@ TEST_CASE("Beyond the end of a path only what lies in front of it counts") {
     CHECK(turns_off(front, 50.0));
     CHECK_THAT(remark_on_turn(front, 50.0), Catch::Contains("lies up to 204 m aside of that end"));  // 200 and 40 m
     CHECK(remark_on_turn(front_along(bend, box(50, -20, 120, 140).rings, 1.0), 50.0).empty());
+}
+
+TEST_CASE("The runout beyond the end of a path has no step, and a flow that stops before it does not turn off") {
+    const Polyline path = {{0, 0}, {1000, 0}};
+    const auto reach = [&](double front) { return reach_along(path, box(500, 40, front, 100).rings, 1.0); };
+    CHECK(reach(1010) == Approx(1000));
+    CHECK(reach(1030) == Approx(1020));  // 30 m ahead, 40 m aside
+    CHECK(reach(1039) == Approx(1038));
+    CHECK(reach(1041) == Approx(1041));
+    const FrontAlong wide = front_along(path, box(900, -200, 960, 200).rings, 1.0);
+    CHECK(wide.place == Approx(960));
+    CHECK_FALSE(turns_off(wide, 50.0));
+    CHECK(turns_off(front_along(path, box(900, -200, 1001, 200).rings, 1.0), 50.0));
 }
 
 TEST_CASE("The steepest path ends where it meets the edge of the terrain, but passes by a hole in it", "[nan]") {
@@ -128,6 +143,19 @@ TEST_CASE("The steepest path ends where it meets the edge of the terrain, but pa
     CHECK(steepest_path(made([](double x, double y) { return x + y; }), {595, 105}).back().y() == Approx(5));
 }
 
+TEST_CASE("A path that touches the edge of the terrain and turns back inside goes on") {
+    // a trough along x, whose bottom is on the northern row of nodes from 275 to 325 m
+    const Raster bed = made([](double x, double y) {
+        return 300.0 - 0.5 * x + 0.4 * std::abs(y - (195.0 - 0.5 * std::max(0.0, std::abs(x - 300.0) - 25.0)));
+    });
+    const Polyline path = steepest_path(bed, {105, 105});
+    CHECK(path.back().x() == Approx(595));
+    CHECK(path.back().y() == Approx(195 - 0.5 * (295 - 25)).margin(0.5 * cell));
+    double northernmost = 0.0;
+    for (const Vec2& p : path) northernmost = std::max(northernmost, p.y());
+    CHECK(northernmost > 185.0);
+}
+
 TEST_CASE("Releases in different valleys have a runout each, those on one slope have one", "[compare]") {
     // two valleys down along x, at y = 55 and y = 145 m, with a ridge of 27 m between; flows of 30 m width in each
     const auto sides = [](double y) { return 0.6 * std::min(std::abs(y - 55.0), std::abs(y - 145.0)); };
@@ -146,7 +174,7 @@ TEST_CASE("Releases in different valleys have a runout each, those on one slope 
     survey.footprint = {{box(50, 40, 280, 70), box(50, 130, 400, 160)}, "", "survey.geojson"};
     const Comparison c = compare(flow.run(), survey);
     const Vec2 start = c.path.front();
-    CHECK(start.y() == Approx(65));  // of the larger one, nearest to the middle of all, a node off the bottom
+    CHECK(start.y() == Approx(55));  // of the larger one
     const auto from_start = [&](double x) { return Approx(x - start.x()).margin(cell * (std::sqrt(2.0) - 1.0)); };
     CHECK(c.trace.runout == from_start(250));
     CHECK(c.final->runout == from_start(250));
@@ -156,7 +184,7 @@ TEST_CASE("Releases in different valleys have a runout each, those on one slope 
     CHECK(c.others[0].simulated == Approx(450 - c.others[0].path.front().x()));
     CHECK(c.others[0].surveyed == Approx(400 - c.others[0].path.front().x()));
     REQUIRE(c.remarks.size() == 1);
-    CHECK_THAT(c.remarks[0], Catch::Contains("the releases lie in different valleys: the runout is that from"));
+    CHECK_THAT(c.remarks[0], Catch::Contains("the releases lie in different valleys; the runout is that from"));
 
     flow.bed = made([&](double x, double) { return 300.0 - 0.5 * x; });  // no ridge: one flow in two parts
     const Comparison slope = compare(flow.run(), survey);
@@ -165,6 +193,58 @@ TEST_CASE("Releases in different valleys have a runout each, those on one slope 
     // valleys that join before the fronts
     flow.bed = made([&](double x, double y) { return 300.0 - 0.5 * x + (x < 200.0 ? sides(y) : std::abs(y - 55.0)); });
     CHECK(compare(flow.run(), survey).others.empty());
+}
+
+namespace {
+
+struct Valley {
+    double bottom, from, to;  ///< along y, and the released places along x [m]
+};
+
+/// Three valleys down along x, with ridges of 19 m between; a flow of 30 m width from each release to `front`.
+ComparedFlow in_valleys(const std::vector<Valley>& releases, double front) {
+    ComparedFlow flow(front);
+    flow.bed = made([](double x, double y) {
+        return 300.0 - 0.5 * x + 0.6 * std::min({std::abs(y - 35.0), std::abs(y - 105.0), std::abs(y - 165.0)});
+    });
+    flow.peak = Raster::filled(slope_grid(), 0.0);
+    flow.arrival = Raster::filled(slope_grid(), Raster::nodata);
+    for (const Valley& v : releases)
+        for (Index k = 0; k < slope_grid().size(); ++k) {
+            const double x = slope_grid().x(k % 60), y = slope_grid().y(k / 60);
+            const auto node = static_cast<std::size_t>(k);
+            if (within(x, y, v.from, v.bottom - 15, front, v.bottom + 15)) flow.peak.values[node] = 2.0;
+            if (within(x, y, v.from, v.bottom - 15, v.to, v.bottom + 15)) flow.arrival.values[node] = 0.0;
+        }
+    flow.last = flow.peak;
+    return flow;
+}
+
+}  // namespace
+
+TEST_CASE("The runout is that of the largest release, also where a small one lies nearer to the middle", "[compare]") {
+    ComparedFlow flow = in_valleys({{35, 50, 100}, {165, 50, 100}}, 500);
+    flow.arrival.at(10, 10) = 0.0;  // 105, 105 m
+    flow.peak.at(10, 10) = 2.0;
+    Survey survey;
+    survey.footprint = {{box(50, 20, 500, 50), box(50, 150, 500, 180)}, "", "survey.geojson"};
+    const Comparison c = compare(flow.run(), survey);
+    CHECK(c.path.front() == Vec2(75, 35));
+    CHECK(c.trace.runout == Approx(425));
+    CHECK(c.surveyed_runout == Approx(425));
+    REQUIRE(c.others.size() == 2);
+    CHECK(c.others[0].simulated == Approx(425));
+    CHECK(c.others[0].surveyed == Approx(425));
+}
+
+TEST_CASE("A release beside the path of another valley has no runout of its own", "[compare]") {
+    const ComparedFlow flow = in_valleys({{35, 50, 120}, {165, 50, 110}, {145, 300, 320}}, 500);
+    Survey survey;
+    survey.footprint = {{box(50, 20, 500, 50), box(50, 150, 500, 180)}, "", "survey.geojson"};
+    const Comparison c = compare(flow.run(), survey);
+    REQUIRE(c.others.size() == 1);
+    CHECK(c.others[0].path.front().y() == Approx(165));
+    CHECK(c.others[0].simulated == Approx(500 - c.others[0].path.front().x()));
 }
 
 TEST_CASE("A flow that turns off at the end of the path is told so", "[compare]") {

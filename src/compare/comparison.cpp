@@ -44,7 +44,7 @@ private:
         const Raster ever = buried ? deepest_cover(*run_.peak_depth, *lying_) : *run_.peak_depth;
         result_.outline = pixel_outline(ever, run_.limit);
         paths_ = {result_.path};
-        if (released_at_) find_other_valleys(*released_at_, ever);
+        if (released_) find_other_valleys(ever);
         result_.trace = scores(ever, result_.outline);
         if (lying_) result_.final = scores(*lying_, pixel_outline(*lying_, run_.limit));
         if (!result_.path.empty()) {
@@ -76,31 +76,36 @@ private:
             const std::optional<Vec2> release = release_middle(*run_.arrival_time),
                                       start = release ? release : run_.start;
             if (start) result_.path = steepest_path(*run_.bed, *start);
-            released_at_ = release;
+            released_ = release.has_value();
             if (length_of(result_.path) > 0.0)
                 result_.path_source =
                     fmt::format("steepest path from {}", release ? "the release" : "where material comes in");
             else
-                result_.path.clear(), released_at_.reset();
+                result_.path.clear(), released_ = false;
         }
         if (result_.path.empty())
             remark("no steepest path from the start of the flow is known, so no {}; give one with --path",
                    result_.extents ? "runout" : "volumes along it");
     }
 
-    /// Releases whose paths do not meet the first one before the front, and have a ridge between: a runout each.
-    void find_other_valleys(const Vec2& first, const Raster& ever) {
-        constexpr std::size_t most = 8;
+    /// Releases whose paths meet none of the others before the front, and have a ridge between: a runout each.
+    void find_other_valleys(const Raster& ever) {
+        constexpr std::size_t most = 9;
         std::vector<Polyline> all{result_.path};
-        for (const Vec2& middle : release_middles(*run_.arrival_time, first, most))
-            if (Polyline path = steepest_path(*run_.bed, middle); length_of(path) > 0.0) all.push_back(std::move(path));
+        const std::vector<Vec2> middles = release_middles(*run_.arrival_time, most);  // the path is that of the first
+        for (std::size_t n = 1; n < middles.size(); ++n)
+            if (Polyline path = steepest_path(*run_.bed, middles[n]); length_of(path) > 0.0)
+                all.push_back(std::move(path));
         if (all.size() == 1) return;
         const std::vector<FrontAlong> fronts = fronts_along(all, result_.outline, result_.cell);
         for (std::size_t n = 1; n < all.size(); ++n) {
             if (std::isnan(fronts[n].place)) continue;
-            const Vec2 front = point_along(all[n], fronts[n].place),
-                       nearby = point_along(result_.path, place_along(result_.path, front).place);
-            if (ridge_between(*run_.bed, ever, run_.limit, front, nearby)) paths_.push_back(all[n]);
+            const Vec2 front = point_along(all[n], fronts[n].place);
+            const bool apart = std::all_of(paths_.begin(), paths_.end(), [&](const Polyline& path) {
+                const Vec2 nearby = point_along(path, place_along(path, front).place);
+                return ridge_between(*run_.bed, ever, run_.limit, front, nearby);
+            });
+            if (apart) paths_.push_back(all[n]);
         }
     }
 
@@ -192,10 +197,8 @@ private:
                 fmt::format("{}{} / {} from {:.10g}, {:.10g}", runouts.empty() ? "" : "; ", metres(other.simulated),
                             metres(other.surveyed), other.path.front().x(), other.path.front().y());
         remark(
-            "the releases lie in different valleys: the runout is that from {:.10g}, {:.10g} alone, and each point of "
-            "an "
-            "outline counts for the path that is nearest; along the steepest paths of the other releases, simulated / "
-            "surveyed: {}",
+            "the releases lie in different valleys; the runout is that from {:.10g}, {:.10g}. Each point of an outline "
+            "counts for the nearest path. Runouts along the others, simulated / surveyed: {}",
             result_.path.front().x(), result_.path.front().y(), runouts);
     }
 
@@ -216,8 +219,8 @@ private:
     const SimulatedRun& run_;
     const Survey& survey_;
     Rings rings_;
-    std::optional<Vec2> released_at_;  ///< where the path starts, if it is the steepest one of a release
-    std::vector<Polyline> paths_;      ///< the path, then those of releases in other valleys
+    bool released_ = false;        ///< whether the path is the steepest one of the largest release
+    std::vector<Polyline> paths_;  ///< the path, then those of releases in other valleys
     FrontAlong surveyed_front_, simulated_front_;
     double step_ = 1.0;
     Comparison result_;

@@ -26,34 +26,45 @@ class Drainage {
 public:
     explicit Drainage(const Raster& bed) : bed_(bed) {}
 
-    /// Nodes from `start` to where they meet the edge of the terrain. A way that starts on it leaves it first.
+    /// Nodes from `start` to where they stay on the edge of the terrain. A way that starts on it leaves it first.
     std::vector<Index> from(Index start) {
         std::vector<Index> nodes{start};
-        bool inside = !at_outer_edge(start);
-        const auto goes_on = [&](Index node) {
-            nodes.push_back(node);
-            const bool outer = at_outer_edge(node);
-            const bool met = inside && outer;
+        const std::size_t on_edge = follow(nodes);
+        if (on_edge > 1) nodes.resize(nodes.size() - on_edge + 1);
+        return nodes;
+    }
+
+private:
+    /// Lengthens a way of one node until it stays on the edge or cannot go on. Returns how many of its last nodes lie on
+    /// the edge. A way that touches it and turns back inside goes on.
+    std::size_t follow(std::vector<Index>& nodes) {
+        constexpr std::size_t stay = 11;  // as many as a path is smoothed over
+        Index node = nodes.front();
+        bool inside = !at_outer_edge(node);
+        std::size_t on_edge = 0;
+        const auto goes_on = [&](Index next) {
+            nodes.push_back(next);
+            const bool outer = at_outer_edge(next);
+            on_edge = inside && outer ? on_edge + 1 : 0;
             inside = inside || !outer;
-            return !met;
+            return on_edge < stay;
         };
-        for (Index node = start;;) {
+        for (;;) {
             const Index below = steepest(node);
             if (below != edge) {
-                if (!goes_on(node = below)) return nodes;
+                if (!goes_on(node = below)) return on_edge;
                 continue;
             }
-            if (at_edge(node)) return nodes;
+            if (at_edge(node)) return on_edge;
             if (way_out_.empty()) flood();  // takes long on a large terrain, where the way may have no hollow
             const double hollow = height(node);
             do {  // every way out of a hollow ends below it or at the edge
                 node = way_out_[static_cast<std::size_t>(node)];
-                if (node == edge || !goes_on(node)) return nodes;
+                if (node == edge || !goes_on(node)) return on_edge;
             } while (height(node) >= hollow);
         }
     }
 
-private:
     static constexpr Index unseen = -2, edge = -1;
     enum : char { unknown, within, beyond };  ///< nodata: in a hole of the terrain, or around it
 
@@ -183,41 +194,34 @@ Polyline steepest_path(const Raster& bed, const Vec2& start) {
     return smoothed(line, reach);
 }
 
-std::optional<Vec2> release_middle(const Raster& arrival_time) {
-    std::vector<Index> released;
-    for (Index node = 0; node < arrival_time.geometry.size(); ++node)
-        if (arrival_time.values[static_cast<std::size_t>(node)] == 0.0) released.push_back(node);
-    if (released.empty()) return std::nullopt;
-    return middle_of(released, arrival_time.geometry);
-}
-
-std::vector<Vec2> release_middles(const Raster& arrival_time, const Vec2& but, std::size_t most) {
+std::vector<Vec2> release_middles(const Raster& arrival_time, std::size_t most) {
     const GridGeometry& g = arrival_time.geometry;
     std::vector<char> open(arrival_time.values.size());
     for (std::size_t k = 0; k < open.size(); ++k) open[k] = arrival_time.values[k] == 0.0;
     std::vector<std::vector<Index>> releases;
-    const NodeAt left_out = nearest_node(g, but);
     for (Index first = 0; first < g.size(); ++first) {
         if (!open[static_cast<std::size_t>(first)]) continue;
         std::vector<Index> nodes{first};
         open[static_cast<std::size_t>(first)] = 0;
-        bool wanted = true;
-        for (std::size_t k = 0; k < nodes.size(); ++k) {
-            wanted = wanted && nodes[k] != left_out.j * g.nx + left_out.i;
+        for (std::size_t k = 0; k < nodes.size(); ++k)
             for (const Neighbour& n : neighbours) {
                 const NodeAt at{nodes[k] % g.nx + n.di, nodes[k] / g.nx + n.dj};
                 if (!has_node(g, at) || !open[static_cast<std::size_t>(at.j * g.nx + at.i)]) continue;
                 open[static_cast<std::size_t>(at.j * g.nx + at.i)] = 0;
                 nodes.push_back(at.j * g.nx + at.i);
             }
-        }
-        if (wanted) releases.push_back(std::move(nodes));
+        releases.push_back(std::move(nodes));
     }
     std::stable_sort(releases.begin(), releases.end(),
                      [](const auto& a, const auto& b) { return a.size() > b.size(); });
     std::vector<Vec2> middles;
     for (std::size_t k = 0; k < std::min(most, releases.size()); ++k) middles.push_back(middle_of(releases[k], g));
     return middles;
+}
+
+std::optional<Vec2> release_middle(const Raster& arrival_time) {
+    const std::vector<Vec2> largest = release_middles(arrival_time, 1);
+    return largest.empty() ? std::nullopt : std::optional<Vec2>(largest.front());
 }
 
 bool ridge_between(const Raster& bed, const Raster& peak_depth, double limit, const Vec2& a, const Vec2& b) {
@@ -244,16 +248,18 @@ PlaceAlong place_along(const Polyline& path, const Vec2& p) {
         if (!(length > 0.0)) continue;
         const double t = nearest_fraction(path[k], path[k + 1], p);
         const double distance = (p - path[k] - t * along).norm();
-        if (distance < nearest.distance) nearest = {before + t * length, distance, false};
+        if (distance < nearest.distance) nearest = {before + t * length, distance};
         before += length;
         const Vec2 from_end = p - path[k + 1], direction = along / length;
         ahead = from_end.dot(direction);
         aside = std::abs(direction.x() * from_end.y() - direction.y() * from_end.x());
     }
-    if (nearest.place >= before && ahead > 0.0 && aside <= ahead)
-        nearest.place += ahead, nearest.distance = aside;
-    else
-        nearest.off_end = nearest.place + nearest.distance > before;
+    nearest.at_end = nearest.place >= before;
+    nearest.off_end = nearest.at_end ? aside > ahead : nearest.place + nearest.distance > before;
+    if (!nearest.at_end) return nearest;
+    const double counted = std::clamp(2.0 * ahead - aside, 0.0, ahead);
+    nearest.place += counted;
+    nearest.distance = std::hypot(ahead - counted, aside);
     return nearest;
 }
 
@@ -268,6 +274,7 @@ std::vector<FrontAlong> fronts_along(const std::vector<Polyline>& paths, const R
                 at = other, nearest = n;
         FrontAlong& front = fronts[nearest];
         if (!(at.place <= front.place)) front.place = at.place;
+        front.meets_end = front.meets_end || at.at_end;
         double& farthest = at.off_end ? front.off_end : front.off_path;
         farthest = std::max(farthest, at.distance);
     };
@@ -316,7 +323,9 @@ std::string remark_on_end(double length, double farthest, double allowed) {
     return fmt::format("the path ends {:.4g} m before the farther front and goes on straight there", farthest - length);
 }
 
-bool turns_off(const FrontAlong& front, double allowed) { return front.off_end > front.off_path + allowed; }
+bool turns_off(const FrontAlong& front, double allowed) {
+    return front.meets_end && front.off_end > front.off_path + allowed;
+}
 
 std::string remark_on_turn(const FrontAlong& front, double allowed) {
     if (!turns_off(front, allowed)) return "";

@@ -11,17 +11,17 @@ namespace frana {
 
 /// The way that water would take from a node to the edge of the terrain. It goes to the lowest of the eight neighbours
 /// by slope (O'Callaghan & Mark 1984). Out of hollows it goes over their lowest edge (priority flood, Barnes et al.
-/// 2014). It ends where it meets the edge. Nodata is an edge; round a hole of it the way goes on as long as it falls. It
-/// is smoothed over eleven nodes. Empty when the start has no elevation.
+/// 2014). It ends where it meets the edge to stay there, for eleven nodes or to its last. Nodata is an edge; round a
+/// hole of it the way goes on as long as it falls. It is smoothed over eleven nodes. Empty when the start has no
+/// elevation.
 Polyline steepest_path(const Raster& bed, const Vec2& start);
 
-/// Middle of a release: the released node nearest to the centroid of all of them; nothing when there are none.
-/// Released are the nodes whose arrival time is 0.
-std::optional<Vec2> release_middle(const Raster& arrival_time);
+/// Middles of up to `most` releases, those of the largest areas first. A middle is the node nearest to the centroid of
+/// its release. Released are the nodes whose arrival time is 0; those that touch are one release.
+std::vector<Vec2> release_middles(const Raster& arrival_time, std::size_t most);
 
-/// Middles, as above, of up to `most` releases, the largest first. Released nodes that touch are one release. The one
-/// that `but` lies in is left out.
-std::vector<Vec2> release_middles(const Raster& arrival_time, const Vec2& but, std::size_t most);
+/// Middle of the largest release; nothing when there is none.
+std::optional<Vec2> release_middle(const Raster& arrival_time);
 
 /// Whether a ridge lies between two places: ground that is higher than both by a twentieth of their distance, where the
 /// flow did not get deeper than `limit` [m]. Without elevations there is none.
@@ -31,11 +31,13 @@ bool ridge_between(const Raster& bed, const Raster& peak_depth, double limit, co
 struct PlaceAlong {
     double place = 0.0;          ///< of the path's point nearest to it [m]
     double distance = INFINITY;  ///< to that point [m]
-    bool off_end = false;        ///< not in front of the end, and farther off the path than the place is from there
+    bool at_end = false;         ///< the path's end is nearest
+    bool off_end = false;        ///< farther off the path than from its end, and not in front of it
 };
 
-/// The path goes on straight beyond its end, for points that lie in front of it. To them the end is the nearest point
-/// of the path, and their direction from there is at most 45 degrees off. Others beyond it count as at the end.
+/// The path goes on straight beyond its end, for points that lie in front of it: the end is the nearest point of the
+/// path to them. What they lie ahead counts in full up to 45 degrees off its direction. Farther off, less of
+/// it counts, by what they lie more aside than ahead; nothing does where they lie twice as far aside.
 PlaceAlong place_along(const Polyline& path, const Vec2& p);
 
 /// How far an outline reaches along a path.
@@ -43,6 +45,7 @@ struct FrontAlong {
     double place = Raster::nodata;  ///< the largest of PlaceAlong::place; NaN without rings [m]
     double off_path = 0.0;          ///< how far the outline lies from the path, but for points beside its end [m]
     double off_end = 0.0;           ///< how far those lie from it [m]
+    bool meets_end = false;         ///< whether any point is nearest to the end
 };
 
 /// `step` [m]: how closely the outline's edges are sampled.
@@ -66,8 +69,8 @@ Vec2 point_along(const Polyline& path, double distance);
 /// by no more than `allowed`.
 std::string remark_on_end(double length, double farthest, double allowed);
 
-/// Whether a flow leaves a path sideways at its end: it lies farther from there than from the rest of the path, by more
-/// than `allowed` [m]. Then its runout is not known.
+/// Whether a flow that reaches a path's end leaves it sideways there: it lies farther from there than from the rest of
+/// the path, by more than `allowed` [m]. Then its runout is not known.
 bool turns_off(const FrontAlong& front, double allowed);
 
 /// What to say then, else "".
