@@ -51,7 +51,7 @@ Vec2 StagedRun::where_allowed(const DepartedPoint& point, const Vec2& to) const 
 /// in their next step: on the barrier they would gain its height. Not so before a hole. Points do not feel its wall,
 /// and would run down the same cells again and again.
 Vec2 StagedRun::place_of_column(const DepartedPoint& point, const Vec2& to) {
-    const Vec2 x = where_allowed(point, to);
+    Vec2 x = where_allowed(point, to);
     const Flow& flow = columns_->flow();
     const bool at_hole = in_hole_wall(flow, x);
     if (!at_hole && (!on_raised(x) || above_barrier(x))) return x;
@@ -116,7 +116,7 @@ std::optional<Vec2> StagedRun::edge_before(const DepartedPoint& point, const Vec
 std::optional<Vec2> StagedRun::nearest_before(const DepartedPoint& point, const Vec2& x, const Allowed& allowed) const {
     constexpr double kSpread = 4.0;  // chosen
     const std::optional<Vec2> edge = edge_before(point, x, allowed);
-    if (!edge) return edge;
+    if (!edge) return std::nullopt;
     for (double spread = kSpread; spread > 1.0; spread -= 1.0) {
         const Vec2 place = *edge + spread * (*edge - x);
         if (may_stand(point, place, allowed)) return place;
