@@ -89,8 +89,9 @@ std::vector<Barrier> village(Index houses, const GridGeometry& g) {
     const Index row = static_cast<Index>(static_cast<double>(g.nx - 8) * kCell / (2.0 * kBreadth));
     std::vector<Barrier> all;
     for (Index n = 0; n < houses; ++n) {
-        const double x = g.x0 + 4.0 * kCell + 2.0 * kBreadth * static_cast<double>(n % row),
-                     y = g.y0 + 4.0 * kCell + 2.0 * kBreadth * static_cast<double>(n / row);
+        const Index line = n / row;
+        const double x = g.x0 + 4.0 * kCell + 2.0 * kBreadth * static_cast<double>(n - line * row),
+                     y = g.y0 + 4.0 * kCell + 2.0 * kBreadth * static_cast<double>(line);
         Barrier house;
         house.name = "house_" + std::to_string(n + 1);
         house.outline.parts = {
