@@ -8,6 +8,7 @@
 #include "coupling/staged_run.h"
 #include "terrain/bed_points.h"
 #include "terrain/part_of.h"
+#include "terrain/places.h"
 
 namespace frana {
 namespace {
@@ -17,14 +18,6 @@ bool in_hole_wall(const Flow& flow, const Vec2& x) {
     const GridGeometry& g = flow.grid.geometry();
     if (!(x.x() >= g.x0 && x.x() <= g.x_max() && x.y() >= g.y0 && x.y() <= g.y_max())) return false;
     return flow.bed.exit[flow.grid.nearest((x.x() - g.x0) / g.cell, (x.y() - g.y0) / g.cell)] == kWall;
-}
-
-/// Of the node nearest to x; it may lie beyond the grid.
-std::pair<Index, Index> cell_at(const GridGeometry& g, const Vec2& x) {
-    const auto nearest = [&](double at, double first) {
-        return static_cast<Index>(std::floor((at - first) / g.cell + 0.5));
-    };
-    return {nearest(x.x(), g.x0), nearest(x.y(), g.y0)};
 }
 
 }  // namespace
@@ -72,16 +65,15 @@ bool StagedRun::is_raised(Index i, Index j) const {
 }
 
 bool StagedRun::on_raised(const Vec2& x) const {
-    const auto [i, j] = cell_at(scene_.bed.geometry, x);
+    const auto [i, j] = nearest_node(scene_.bed.geometry, x);
     return is_raised(i, j);
 }
 
 /// Whether a point's column may stand at x: on the terrain, in an allowed cell that no barrier raises or hides from it.
 bool StagedRun::may_stand(const DepartedPoint& point, const Vec2& x, const Allowed& allowed) const {
     const GridGeometry& g = scene_.bed.geometry;
-    const auto [i, j] = cell_at(g, x);
-    const bool inside = x.x() >= g.x0 && x.y() >= g.y0 && x.x() <= g.x_max() && x.y() <= g.y_max();
-    return inside && !is_raised(i, j) && allowed(i, j) && !behind_barrier(point.position, x);
+    const auto [i, j] = nearest_node(g, x);
+    return between_nodes(g, x) && !is_raised(i, j) && allowed(i, j) && !behind_barrier(point.position, x);
 }
 
 /// In the cell of a node, as near to x as can be.
@@ -98,7 +90,7 @@ Vec2 StagedRun::in_cell(Index i, Index j, const Vec2& x) const {
 std::optional<Vec2> StagedRun::edge_before(const DepartedPoint& point, const Vec2& x, const Allowed& allowed) const {
     constexpr Index kFar = 3;  // cells
     const GridGeometry& g = scene_.bed.geometry;
-    const auto [i0, j0] = cell_at(g, x);
+    const auto [i0, j0] = nearest_node(g, x);
     std::optional<Vec2> edge;
     double least = std::numeric_limits<double>::max();
     for (Index j = std::max<Index>(0, j0 - kFar); j <= std::min(g.ny - 1, j0 + kFar); ++j)
@@ -121,7 +113,7 @@ std::optional<Vec2> StagedRun::nearest_before(const DepartedPoint& point, const 
         const Vec2 place = *edge + spread * (*edge - x);
         if (may_stand(point, place, allowed)) return place;
     }
-    const auto [i, j] = cell_at(scene_.bed.geometry, *edge);
+    const auto [i, j] = nearest_node(scene_.bed.geometry, *edge);
     return in_cell(i, j, 2.0 * *edge - x);
 }
 
@@ -174,7 +166,7 @@ void StagedRun::clear_ramps() {
         return where_allowed(point, point.position.head<2>() + (time - point.time) * point.velocity.head<2>());
     };
     const auto node_at = [&](const Vec2& x) {
-        const auto [i, j] = cell_at(g, x);
+        const auto [i, j] = nearest_node(g, x);
         return std::clamp<Index>(j, 0, g.ny - 1) * g.nx + std::clamp<Index>(i, 0, g.nx - 1);
     };
     const auto on_ramp = [&](const Vec2& x) { return on_raised(x) && !above_barrier(x) && !in_hole_wall(flow, x); };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/speed_counts.h"
 #include "base/types.h"
 
 namespace frana {
@@ -35,7 +36,7 @@ struct NodePeak {
         if (now.depth > footprint_depth && !covered(footprint_depth)) arrival = time;
         depth = std::max(depth, now.depth);
         pressure = std::max(pressure, now.pressure);
-        if (now.depth < 0.1 * footprint_depth) return;
+        if (now.depth < kSpeedCounts * footprint_depth) return;
         speed = std::max(speed, now.speed);
         dynamic_pressure = std::max(dynamic_pressure, now.density * now.speed * now.speed);
     }
@@ -57,7 +58,7 @@ struct FlowExtent {
     /// Takes in a node whose cell has `area` [m2] and that is `distance` [m] from the release's centre.
     void note(const NodeState& now, double footprint_depth, double area, double distance) {
         max_depth = std::max(max_depth, now.depth);
-        if (now.depth >= 0.1 * footprint_depth) max_speed = std::max(max_speed, now.speed);
+        if (now.depth >= kSpeedCounts * footprint_depth) max_speed = std::max(max_speed, now.speed);
         const double of_node = now.density * now.depth * area;
         mass += of_node, motion += of_node * now.speed;
         if (!(now.depth > footprint_depth)) return;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "terrain/bed_points.h"
 #include "terrain/outline_nodes.h"
-#include "terrain/places.h"
 
 namespace frana {
 
@@ -34,8 +34,7 @@ double lowest_ground(const Barrier& barrier, const Raster& bed) {
         const double parts = std::max(1.0, std::ceil(2.0 * along.norm() / bed.geometry.cell));
         for (double part = 0.0; part <= parts; ++part) {
             const Vec2 at = barrier.line[k] + part / parts * along;
-            if (!between_nodes(bed.geometry, at)) continue;
-            if (const double z = NodeSquare(bed.geometry, at).value(bed); z < lowest) lowest = z;
+            if (const double z = bed_elevation(bed, at.x(), at.y()); z < lowest) lowest = z;
         }
     }
     return lowest;

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "base/simd.h"
+#include "base/speed_counts.h"
 #include "law/rheology/laws.h"
 #include "mpm/flow_fields.h"
 #include "mpm/stencil.h"
@@ -130,7 +131,7 @@ Sample DepthAveraged::at(const Vec2& point) const {
 
 /// What counts for the largest speed: not the film at the flow's edge.
 static double speed_that_counts(double depth, double footprint_depth, double speed) {
-    return depth < 0.1 * footprint_depth ? 0.0 : speed;
+    return depth < kSpeedCounts * footprint_depth ? 0.0 : speed;
 }
 
 double DepthAveraged::fastest_node() const {

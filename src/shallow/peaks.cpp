@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/simd.h"
+#include "base/speed_counts.h"
 
 namespace frana {
 
@@ -54,7 +55,7 @@ FlowSpeeds speeds_of(Flow& flow, bool steep, bool curved, double footprint_depth
             Double4 vx, vy;
             unzip(&flow.nodes.before[k], vx, vy);
             const Contact<Double4> c = contact(flow, steep, curved, k, vx, vy);
-            const Double4 speed = select(h < 0.1 * footprint_depth, none, c.speed);
+            const Double4 speed = select(h < kSpeedCounts * footprint_depth, none, c.speed);
             most = max(most, speed);
             const Double4 of_node = flow.share_of_four(i, j) * load(&flow.nodes.mass[k]);
             mass[n] += of_node, motion[n] += of_node * c.speed;

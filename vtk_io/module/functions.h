@@ -68,9 +68,9 @@ namespace frana {
 
 /// A pointer to each of them.
 struct VtkFunctions {
-    const char*
-        build;  ///< version and FRANA_SAME_BUILD; this and the size come first, so that they are read of any module
-    std::size_t size;  ///< of this struct: one with other functions is of another build
+    // These two come first, so that they are read of any module.
+    const char* build;  ///< version and FRANA_SAME_BUILD
+    std::size_t size;   ///< of this struct: one with other functions is of another build
 #define FRANA_VTK_ROW(name) decltype(&frana::name) name;  // NOLINT(bugprone-macro-parentheses): it is a name
     FRANA_VTK_FUNCTIONS(FRANA_VTK_ROW)
 #undef FRANA_VTK_ROW

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/speed_counts.h"
 #include "observe/table.h"
 
 namespace frana {

@@ -8,9 +8,6 @@
 
 namespace frana {
 
-/// Speeds count where the flow is this share of the footprint depth or deeper, as in peaks and Status::max_speed [1].
-inline constexpr double kSpeedCounts = 0.1;
-
 /// A gauge's speeds [m/s], 0 where its depth [m] is too small to count.
 std::vector<double> speeds_that_count(const std::vector<double>& depth, std::vector<double> speed,
                                       double footprint_depth);

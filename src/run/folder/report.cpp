@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/constants.h"
+#include "base/speed_counts.h"
 #include "base/version.h"
 #include "run/folder/comparison.h"
 #include "run/folder/gauge_table.h"

@@ -221,10 +221,10 @@ FigureSource figure_source(const Scene& scene, const Raster& bed, const fs::path
     source.sections = scene.sections;
     source.inflows = record.inflows;
     source.front_origin = record.front_origin;
-    for (const BarrierSummary& barrier : record.barriers)
+    for (const BarrierSummary& barrier : record.barriers) {
         if (!was_hit(barrier)) source.never_hit.push_back(barrier.name);
-    for (const BarrierSummary& barrier : record.barriers)
         if (barrier.blur > 0.0) source.mean_over[barrier.name] = barrier.blur;
+    }
     source.in_3d = scene.solid.has_value();
     source.barrier_tops = tops_of(scene);
     source.barriers = scene.barriers;
