@@ -155,7 +155,7 @@ RunAndSurvey read_run_and_survey(const CompareOptions& options) {
     read.comparison = compare_rasters(source.rasters, source.bed.values.empty() ? nullptr : &source.bed,
                                       source.footprint_depth, survey, source.start, later ? &*later : nullptr);
     if (read.comparison.extents) source.survey = survey.footprint;
-    source.runout_path = read.comparison.path;
+    source.runout_paths = paths_of(read.comparison);
     return read;
 }
 

@@ -133,8 +133,8 @@ void read_runout_path(const CaseFile& run_case, FigureSource& source, std::vecto
         files.path = survey_files(run_case).path;
         Survey survey = read_survey_files(files, peak->raster, said_by_the_run);
         survey.footprint = *source.survey;
-        source.runout_path =
-            compare_rasters(source.rasters, &source.bed, source.footprint_depth, survey, source.start).path;
+        source.runout_paths =
+            paths_of(compare_rasters(source.rasters, &source.bed, source.footprint_depth, survey, source.start));
     } catch (const UserError& error) {
         warnings.push_back(fmt::format("the runout path is not shown: {}", error.what()));
     }

@@ -156,7 +156,7 @@ TEST_CASE("A path that touches the edge of the terrain and turns back inside goe
     CHECK(northernmost > 185.0);
 }
 
-TEST_CASE("Releases in different valleys have a runout each, those on one slope have one", "[compare]") {
+TEST_CASE("Flows that do not meet have a runout each, those that join have one", "[compare]") {
     // two valleys down along x, at y = 55 and y = 145 m, with a ridge of 27 m between; flows of 30 m width in each
     const auto sides = [](double y) { return 0.6 * std::min(std::abs(y - 55.0), std::abs(y - 145.0)); };
     const auto covered = [](double x, double y) {
@@ -184,15 +184,75 @@ TEST_CASE("Releases in different valleys have a runout each, those on one slope 
     CHECK(c.others[0].simulated == Approx(450 - c.others[0].path.front().x()));
     CHECK(c.others[0].surveyed == Approx(400 - c.others[0].path.front().x()));
     REQUIRE(c.remarks.size() == 1);
-    CHECK_THAT(c.remarks[0], Catch::Contains("the releases lie in different valleys; the runout is that from"));
+    CHECK_THAT(c.remarks[0], Catch::Contains("; the runout is that from"));
 
-    flow.bed = made([&](double x, double) { return 300.0 - 0.5 * x; });  // no ridge: one flow in two parts
+    flow.bed = made([&](double x, double) { return 300.0 - 0.5 * x; });  // no ridge between: two flows all the same
     const Comparison slope = compare(flow.run(), survey);
-    CHECK(slope.others.empty());
-    CHECK(slope.trace.runout == Approx(450 - start.x()));
-    // valleys that join before the fronts
-    flow.bed = made([&](double x, double y) { return 300.0 - 0.5 * x + (x < 200.0 ? sides(y) : std::abs(y - 55.0)); });
-    CHECK(compare(flow.run(), survey).others.empty());
+    CHECK(slope.trace.runout == from_start(250));
+    REQUIRE(slope.others.size() == 1);
+    CHECK(slope.others[0].simulated == Approx(450 - slope.others[0].path.front().x()));
+    flow.peak = made([&](double x, double y) { return covered(x, y) || within(x, y, 50, 40, 80, 160) ? 2.0 : 0.0; });
+    CHECK(compare(flow.run(), survey).others.empty());  // they touch
+    CHECK(compare(flow.run(), survey).trace.runout == from_start(450));
+}
+
+TEST_CASE("Where gullies join, a flow that stopped before has its own runout, and one that went on has its own",
+          "[compare]") {
+    // Down along x at y = 55 and y = 145 m, both into the first from x = 300 m on.
+    const auto sides = [](double x, double y) {
+        const double second = 145.0 - 90.0 * std::clamp((x - 200.0) / 100.0, 0.0, 1.0);
+        return 0.6 * std::min(std::abs(y - 55.0), std::abs(y - second));
+    };
+    ComparedFlow flow(300);
+    flow.bed = made([&](double x, double y) { return 300.0 - 0.5 * x + sides(x, y); });
+    const auto second = [](double x, double y) {
+        const double middle = 145.0 - 90.0 * std::clamp((x - 200.0) / 100.0, 0.0, 1.0);
+        return x > 50.0 && x < 450.0 && std::abs(y - middle) < 20.0;
+    };
+    const auto released = [](double x, double y) {
+        return within(x, y, 50, 40, 110, 70) || within(x, y, 50, 130, 100, 160);
+    };
+    const auto compared = [&](double first_front) {
+        const auto covered = [&](double x, double y) { return within(x, y, 50, 40, first_front, 70) || second(x, y); };
+        flow.peak = made([&](double x, double y) { return covered(x, y) ? 2.0 : 0.0; });
+        flow.last = flow.peak;
+        flow.arrival = made([&](double x, double y) {
+            return released(x, y) ? 0.0 : covered(x, y) ? x / 20.0 : Raster::nodata;
+        });
+        Survey survey;
+        survey.footprint = {{box(50, 40, 480, 70)}, "", "survey.geojson"};
+        return compare(flow.run(), survey);
+    };
+    const Comparison short_of_it = compared(180);
+    CHECK(short_of_it.trace.runout == Approx(180 - short_of_it.path.front().x()).margin(cell));
+    REQUIRE(short_of_it.others.size() == 1);
+    const OtherRunout& other = short_of_it.others[0];
+    CHECK(other.path.front().y() == Approx(145));
+    CHECK(other.simulated > 450 - other.path.front().x());  // and it goes aslant
+    CHECK(other.surveyed - other.simulated == Approx(30).margin(cell));
+    CHECK(compared(320).others.empty());
+}
+
+TEST_CASE("A flow that leaves the steepest path has a runout along its own track", "[compare]") {
+    // The path goes straight down along x; the flow turns off after 100 m, to the south-east.
+    ComparedFlow flow(300);
+    flow.bed = made([](double x, double y) { return 300.0 - 0.5 * x + 0.001 * std::abs(y - 155.0); });
+    const auto middle = [](double x) { return 155.0 - 0.5 * std::max(0.0, x - 100.0); };
+    const auto covered = [&](double x, double y) { return x > 50.0 && x < 350.0 && std::abs(y - middle(x)) < 20.0; };
+    flow.peak = made([&](double x, double y) { return covered(x, y) ? 2.0 : 0.0; });
+    flow.last = flow.peak;
+    flow.arrival = made([&](double x, double y) { return covered(x, y) ? (x < 80.0 ? 0.0 : 1.0) : Raster::nodata; });
+    Survey survey;
+    survey.footprint = {{box(50, 20, 360, 180)}, "", "survey.geojson"};
+    const Comparison c = compare(flow.run(), survey);
+    CHECK(c.path_source == "track of the flow from the release");
+    const double start = c.path.front().x(), aslant = std::hypot(1.0, 0.5);
+    // A track over nodes goes along x and the diagonals, before it is smoothed.
+    CHECK(c.trace.runout == Approx(100.0 - start + 250.0 * aslant).epsilon(0.03));
+    REQUIRE_FALSE(c.remarks.empty());
+    CHECK_THAT(c.remarks[0], Catch::Contains("left the steepest path before half of its way"));
+    survey.path = Polyline{{60, 155}, {100, 155}, {360, 25}};
+    CHECK(compare(flow.run(), survey).remarks.empty());
 }
 
 namespace {

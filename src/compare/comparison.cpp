@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "compare/flow_tracks.h"
 
 namespace frana {
 namespace {
@@ -43,13 +44,11 @@ private:
         const bool buried = lying_ && run_.deposited_depth;
         const Raster ever = buried ? deepest_cover(*run_.peak_depth, *lying_) : *run_.peak_depth;
         result_.outline = pixel_outline(ever, run_.limit);
-        paths_ = {result_.path};
-        if (released_) find_other_valleys(ever);
+        find_paths(ever);
         result_.trace = scores(ever, result_.outline);
         if (lying_) result_.final = scores(*lying_, pixel_outline(*lying_, run_.limit));
         if (!result_.path.empty()) {
-            const std::vector<FrontAlong> surveyed = fronts_along(paths_, rings_, result_.cell),
-                                          simulated = fronts_along(paths_, result_.outline, result_.cell);
+            const std::vector<FrontAlong> surveyed = fronts_of_survey(), simulated = fronts_of(result_.outline);
             surveyed_front_ = surveyed.front(), simulated_front_ = simulated.front();
             for (std::size_t n = 1; n < paths_.size(); ++n)
                 result_.others.push_back({paths_[n], simulated[n].place, surveyed[n].place});
@@ -61,7 +60,7 @@ private:
 
     void choose_path() {
         if (survey_.path) {
-            result_.path = *survey_.path;
+            result_.path = *survey_.path, result_.path_is_given = true;
             const double rise = height_at(result_.path.back()) - height_at(result_.path.front());
             if (run_.bed && std::isnan(rise))
                 remark(
@@ -88,25 +87,35 @@ private:
                    result_.extents ? "runout" : "volumes along it");
     }
 
-    /// Releases whose paths meet none of the others before the front, and have a ridge between: a runout each.
-    void find_other_valleys(const Raster& ever) {
+    void find_paths(const Raster& ever) {
         constexpr std::size_t most = 9;
-        std::vector<Polyline> all{result_.path};
-        const std::vector<Vec2> middles = release_middles(*run_.arrival_time, most);  // the path is that of the first
-        for (std::size_t n = 1; n < middles.size(); ++n)
-            if (Polyline path = steepest_path(*run_.bed, middles[n]); length_of(path) > 0.0)
-                all.push_back(std::move(path));
-        if (all.size() == 1) return;
-        const std::vector<FrontAlong> fronts = fronts_along(all, result_.outline, result_.cell);
-        for (std::size_t n = 1; n < all.size(); ++n) {
-            if (std::isnan(fronts[n].place)) continue;
-            const Vec2 front = point_along(all[n], fronts[n].place);
-            const bool apart = std::all_of(paths_.begin(), paths_.end(), [&](const Polyline& path) {
-                const Vec2 nearby = point_along(path, place_along(path, front).place);
-                return ridge_between(*run_.bed, ever, run_.limit, front, nearby);
-            });
-            if (apart) paths_.push_back(all[n]);
+        paths_ = {result_.path};
+        if (result_.path.empty() || survey_.path) return;
+        const std::vector<Vec2> starts =
+            released_ ? release_middles(*run_.arrival_time, most) : std::vector<Vec2>{result_.path.front()};
+        tracks_.emplace(ever, run_.limit, starts);
+        paths_.clear();
+        for (const RunoutPath& path : runout_paths(*run_.bed, ever, run_.limit, *tracks_, starts)) {
+            if (path.of_flow) follow_flow(paths_.empty(), path);
+            paths_.push_back(path.line);
         }
+        result_.path = paths_.front();
+    }
+
+    void follow_flow(bool first, const RunoutPath& path) {
+        if (first) result_.path_source = "track of the flow from the release", follows_flow_ = true;
+        result_.remarks.push_back(remark_on_track(path) +
+                                  "; other runs may have other tracks, so give one with --path to compare them");
+    }
+
+    std::vector<FrontAlong> fronts_of_survey() const {
+        return tracks_ ? fronts_of_polygons(paths_, survey_.footprint, result_.cell)
+                       : fronts_along(paths_, rings_, result_.cell);
+    }
+
+    std::vector<FrontAlong> fronts_of(const Rings& outline) const {
+        return tracks_ ? fronts_of_parts(paths_, *tracks_, outline, result_.cell)
+                       : fronts_along(paths_, outline, result_.cell);
     }
 
     /// NaN where there is no terrain.
@@ -123,7 +132,7 @@ private:
         scores.areas = overlap(depth, run_.limit, rings_);
         scores.boundary = distance_between(outline, rings_, step_);
         if (!result_.path.empty()) {
-            scores.runout = fronts_along(paths_, outline, result_.cell).front().place;
+            scores.runout = fronts_of(outline).front().place;
             scores.reach = farthest_from(result_.path.front(), outline);
         }
         return scores;
@@ -165,6 +174,7 @@ private:
         const std::string end = remark_on_end(length, farthest, round_off * length);
         if (!end.empty()) result_.remarks.push_back(end);
         tell_other_valleys();
+        tell_other_flow();
         if (!doubt_path()) doubt_end();
         if (!result_.deposit) return;
         const DepositErrors& deposit = *result_.deposit;
@@ -197,14 +207,26 @@ private:
                 fmt::format("{}{} / {} from {:.10g}, {:.10g}", runouts.empty() ? "" : "; ", metres(other.simulated),
                             metres(other.surveyed), other.path.front().x(), other.path.front().y());
         remark(
-            "the releases lie in different valleys; the runout is that from {:.10g}, {:.10g}. Each point of an outline "
-            "counts for the nearest path. Runouts along the others, simulated / surveyed: {}",
+            "flows from several releases do not meet, or went down different valleys; the runout is that from {:.10g}, "
+            "{:.10g}. A surveyed polygon counts for the paths that start in it. Runouts of the others, simulated / "
+            "surveyed: {}",
             result_.path.front().x(), result_.path.front().y(), runouts);
+    }
+
+    /// The farthest front along the path may be that of another release, on the same slope or farther down its gully.
+    void tell_other_flow() {
+        if (!tracks_ || result_.path.empty()) return;
+        const double own = front_of_own_part(result_.path, *tracks_, result_.outline, result_.cell).place;
+        if (!(result_.trace.runout > own + noticeable * result_.cell)) return;
+        remark(
+            "the flow from {:.10g}, {:.10g} itself reaches {:.4g} m along the path; the runout of {:.4g} m is that of "
+            "another flow, which does not touch it",
+            result_.path.front().x(), result_.path.front().y(), own, result_.trace.runout);
     }
 
     /// A flow that runs up an opposite slope or over a dam leaves the path that water would take.
     bool doubt_path() {
-        if (survey_.path || result_.path.empty() || !result_.others.empty()) return false;
+        if (survey_.path || result_.path.empty() || !result_.others.empty() || follows_flow_) return false;
         const double along = result_.trace.runout - result_.surveyed_runout;
         const double straight = result_.trace.reach - result_.surveyed_reach;
         if (!(std::abs(along - straight) > noticeable * result_.cell)) return false;
@@ -219,8 +241,10 @@ private:
     const SimulatedRun& run_;
     const Survey& survey_;
     Rings rings_;
-    bool released_ = false;        ///< whether the path is the steepest one of the largest release
-    std::vector<Polyline> paths_;  ///< the path, then those of releases in other valleys
+    bool follows_flow_ = false;         ///< the path is the track of the flow itself
+    bool released_ = false;             ///< whether the path is the steepest one of the largest release
+    std::vector<Polyline> paths_;       ///< the path, then those of releases in other valleys
+    std::optional<FlowTracks> tracks_;  ///< of what was ever covered, where the paths are not the survey's
     FrontAlong surveyed_front_, simulated_front_;
     double step_ = 1.0;
     Comparison result_;
@@ -228,6 +252,13 @@ private:
 };
 
 }  // namespace
+
+std::vector<Polyline> paths_of(const Comparison& comparison) {
+    std::vector<Polyline> paths;
+    if (!comparison.path.empty()) paths.push_back(comparison.path);
+    for (const OtherRunout& other : comparison.others) paths.push_back(other.path);
+    return paths;
+}
 
 Comparison compare(const SimulatedRun& run, const Survey& survey) { return Comparing(run, survey).all(); }
 

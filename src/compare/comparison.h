@@ -44,7 +44,7 @@ struct ExtentScores {
     double reach = Raster::nodata;   ///< straight from the path's start to the farthest point of the extent [m]
 };
 
-/// Runout of a release in a valley of its own, along the steepest path from there.
+/// Runout of a release whose flow does not touch that of a larger one, or went down another valley.
 struct OtherRunout {
     Polyline path;
     double simulated = Raster::nodata, surveyed = Raster::nodata;  ///< NaN: nothing of that is nearest to this path [m]
@@ -58,14 +58,18 @@ struct Comparison {
     ExtentScores trace;                 ///< everything ever covered, as Fois et al. (2024), section 4.3
     std::optional<ExtentScores> final;  ///< what is covered at the end
     Polyline path;                      ///< empty: none
-    std::vector<OtherRunout> others;    ///< of releases in other valleys; what is nearest to them is not on the path
+    std::vector<OtherRunout> others;    ///< of releases with flows of their own
     double surveyed_runout = Raster::nodata, surveyed_reach = Raster::nodata;
     std::optional<DepositErrors> deposit;
     std::optional<BedChangeErrors> bed_change;
     std::vector<BedChangeStep> bed_change_steps;  ///< along the path
     Rings outline;                                ///< of the trace
     std::vector<std::string> remarks;
+    bool path_is_given = false;  ///< the survey's; else it was found on the terrain
 };
+
+/// The path, then those of the others.
+std::vector<Polyline> paths_of(const Comparison& comparison);
 
 /// Without a footprint the survey has to have a bed_change, which alone is compared.
 Comparison compare(const SimulatedRun& run, const Survey& survey);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <queue>
 
 #include "base/error.h"
@@ -157,19 +158,6 @@ private:
     std::vector<char> nodata_;
 };
 
-/// Mean over `reach` nodes on either side, fewer near the ends, which stay.
-Polyline smoothed(const Polyline& line, Index reach) {
-    Polyline result;
-    const auto last = static_cast<Index>(line.size()) - 1;
-    for (Index k = 0; k <= last; ++k) {
-        const Index r = std::min({reach, k, last - k});
-        Vec2 sum(0, 0);
-        for (Index m = k - r; m <= k + r; ++m) sum += line[static_cast<std::size_t>(m)];
-        result.push_back(sum / static_cast<double>(2 * r + 1));
-    }
-    return result;
-}
-
 /// The node nearest to the centroid of them all.
 Vec2 middle_of(const std::vector<Index>& nodes, const GridGeometry& g) {
     const auto place = [&](Index node) { return Vec2(g.x(node % g.nx), g.y(node / g.nx)); };
@@ -181,6 +169,13 @@ Vec2 middle_of(const std::vector<Index>& nodes, const GridGeometry& g) {
     }));
 }
 
+void add_to(FrontAlong& front, const PlaceAlong& at) {
+    if (!(at.place <= front.place)) front.place = at.place;
+    front.meets_end = front.meets_end || at.at_end;
+    double& farthest = at.off_end ? front.off_end : front.off_path;
+    farthest = std::max(farthest, at.distance);
+}
+
 }  // namespace
 
 Polyline steepest_path(const Raster& bed, const Vec2& start) {
@@ -190,8 +185,20 @@ Polyline steepest_path(const Raster& bed, const Vec2& start) {
     Polyline line;
     for (const Index node : Drainage(bed).from(first.j * g.nx + first.i))
         line.emplace_back(g.x(node % g.nx), g.y(node / g.nx));
-    constexpr Index reach = 5;  // takes out the eight directions of the grid, leaves the bends of a valley
-    return smoothed(line, reach);
+    return smoothed_path(line);
+}
+
+Polyline smoothed_path(const Polyline& line) {
+    constexpr Index reach = 5;
+    Polyline result;
+    const auto last = static_cast<Index>(line.size()) - 1;
+    for (Index k = 0; k <= last; ++k) {
+        const Index r = std::min({reach, k, last - k});
+        Vec2 sum(0, 0);
+        for (Index m = k - r; m <= k + r; ++m) sum += line[static_cast<std::size_t>(m)];
+        result.push_back(sum / static_cast<double>(2 * r + 1));
+    }
+    return result;
 }
 
 std::vector<Vec2> release_middles(const Raster& arrival_time, std::size_t most) {
@@ -263,20 +270,20 @@ PlaceAlong place_along(const Polyline& path, const Vec2& p) {
     return nearest;
 }
 
-std::vector<FrontAlong> fronts_along(const std::vector<Polyline>& paths, const Rings& outline, double step) {
+std::vector<FrontAlong> fronts_along(const std::vector<Polyline>& paths, const Rings& outline, double step,
+                                     const MayCount& may_count) {
     for (const Polyline& path : paths) expect(path.size() >= 2 && length_of(path) > 0.0, "a path has a length");
     std::vector<FrontAlong> fronts(paths.size());
+    std::vector<PlaceAlong> places(paths.size());
     const auto add = [&](const Vec2& p) {
-        std::size_t nearest = 0;
-        PlaceAlong at = place_along(paths.front(), p);
-        for (std::size_t n = 1; n < paths.size(); ++n)
-            if (const PlaceAlong other = place_along(paths[n], p); other.distance < at.distance)
-                at = other, nearest = n;
-        FrontAlong& front = fronts[nearest];
-        if (!(at.place <= front.place)) front.place = at.place;
-        front.meets_end = front.meets_end || at.at_end;
-        double& farthest = at.off_end ? front.off_end : front.off_path;
-        farthest = std::max(farthest, at.distance);
+        double nearest = std::numeric_limits<double>::infinity();
+        for (std::size_t n = 0; n < paths.size(); ++n) {
+            places[n] = !may_count || may_count(p, n) ? place_along(paths[n], p) : PlaceAlong{};
+            nearest = std::min(nearest, places[n].distance);
+        }
+        if (!std::isfinite(nearest)) return;
+        for (std::size_t n = 0; n < paths.size(); ++n)
+            if (places[n].distance <= nearest + (paths.size() > 1 ? step : 0.0)) add_to(fronts[n], places[n]);
     };
     for (const auto& ring : outline)
         for (std::size_t k = 0; k < ring.size(); ++k) {

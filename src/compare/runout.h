@@ -1,6 +1,7 @@
 #pragma once
 // How far an extent reaches along a path.
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -15,6 +16,10 @@ namespace frana {
 /// hole of it the way goes on as long as it falls. It is smoothed over eleven nodes. Empty when the start has no
 /// elevation.
 Polyline steepest_path(const Raster& bed, const Vec2& start);
+
+/// Smoothed over eleven nodes of a path, fewer near its ends, which stay: that takes out the eight directions of the grid
+/// and leaves the bends of a valley.
+Polyline smoothed_path(const Polyline& line);
 
 /// Middles of up to `most` releases, those of the largest areas first. A middle is the node nearest to the centroid of
 /// its release. Released are the nodes whose arrival time is 0; those that touch are one release.
@@ -51,8 +56,13 @@ struct FrontAlong {
 /// `step` [m]: how closely the outline's edges are sampled.
 FrontAlong front_along(const Polyline& path, const Rings& outline, double step);
 
-/// Of several paths, each by the points that are nearest to it. Those as near to several count for the first of them.
-std::vector<FrontAlong> fronts_along(const std::vector<Polyline>& paths, const Rings& outline, double step);
+/// Whether a point of an outline may count for one of several paths.
+using MayCount = std::function<bool(const Vec2& point, std::size_t path)>;
+
+/// Of several paths, each by the points that are nearest to it. Behind a junction paths are one: a point counts for each
+/// path that is no farther from it than the nearest one and a `step`. Without `may_count` each may.
+std::vector<FrontAlong> fronts_along(const std::vector<Polyline>& paths, const Rings& outline, double step,
+                                     const MayCount& may_count = {});
 
 /// The place of that front alone: the path's horizontal length up to there [m].
 double reach_along(const Polyline& path, const Rings& outline, double step);

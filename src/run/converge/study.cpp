@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "compare/deposit.h"
+#include "compare/flow_tracks.h"
 #include "compare/flow_width.h"
 #include "compare/outline.h"
 #include "compare/runout.h"
@@ -59,23 +60,37 @@ constexpr double noticeable = 5.0;  // cells; outlines of pixels are good to one
 
 /// The path that all runouts are measured along.
 struct Path {
-    Polyline line;              ///< empty: none is known
-    std::optional<Vec2> start;  ///< the release's middle
-    std::string turn;           ///< what to say of a flow that leaves it at its end
+    Polyline line;                 ///< empty: none is known
+    std::vector<Polyline> others;  ///< of releases whose flows are apart from that of the first
+    std::optional<Vec2> start;     ///< the release's middle
+    std::string turn;              ///< what to say of a flow that leaves it at its end
 };
 
-Path path_of(const RunFiles& finest, const Raster& bed, std::vector<std::string>& remarks) {
+Path path_of(const RunFiles& finest, const Raster& bed, double limit, std::vector<std::string>& remarks) {
+    constexpr std::size_t most = 9;
     Path path;
-    path.start = release_middle(finest.raster("arrival_time"));
-    if (!path.start) path.start = start_in(finest.record);
+    std::vector<Vec2> starts = release_middles(finest.raster("arrival_time"), most);
+    if (starts.empty())
+        if (const std::optional<Vec2> start = start_in(finest.record)) starts.push_back(*start);
+    if (!starts.empty()) path.start = starts.front();
     if (!path.start) {
         remarks.push_back(
             "it is not known where the flow begins, so neither runout nor reach are, and the rule goes without");
         return path;
     }
-    path.line = steepest_path(bed, *path.start);
-    if (length_of(path.line) > 0.0) return path;
-    path.line.clear();
+    const Raster covered = finest.covered();
+    const std::vector<RunoutPath> paths = runout_paths(bed, covered, limit, FlowTracks(covered, limit, starts), starts);
+    for (std::size_t n = 1; n < paths.size(); ++n) path.others.push_back(paths[n].line);
+    if (!paths.empty() && paths.front().line.front() == starts.front()) {
+        path.line = paths.front().line;
+        if (paths.front().of_flow) remarks.push_back("on the finest cell " + remark_on_track(paths.front()));
+        if (paths.size() > 1)
+            remarks.push_back(fmt::format(
+                "flows from several releases do not meet, or went down different valleys; the runout is that from "
+                "{:.10g}, {:.10g}",
+                starts.front().x(), starts.front().y()));
+        return path;
+    }
     remarks.push_back("no steepest path from the start of the flow is known; the runout is the straight reach");
     return path;
 }
@@ -98,7 +113,9 @@ CellFigures figures_of(const RunFiles& run, const RunFiles& finest, Path& path, 
     figures.reach = path.start ? farthest_from(*path.start, outline) : Raster::nodata;
     figures.runout = figures.reach;
     if (!path.line.empty()) {
-        const FrontAlong front = front_along(path.line, outline, figures.cell);
+        std::vector<Polyline> lines{path.line};
+        lines.insert(lines.end(), path.others.begin(), path.others.end());
+        const FrontAlong front = fronts_of_parts(lines, FlowTracks(covered, limit, {}), outline, figures.cell).front();
         figures.runout = front.place;
         if (path.turn.empty()) path.turn = remark_on_turn(front, noticeable * figures.cell);
     }
@@ -167,7 +184,7 @@ void measure_runs(ConvergenceStudy& study, const Raster& bed) {
     const RunFiles finest = read_run(study.runs.back().folder);
     study.footprint_depth = finest.record["results"].at("footprint_depth").get<double>();
     study.title = finest.record.value("title", "");
-    Path path = path_of(finest, bed, study.remarks);
+    Path path = path_of(finest, bed, study.footprint_depth, study.remarks);
     bool particles = false;
     for (const StudiedRun& run : study.runs) {
         const RunFiles files = read_run(run.folder);

@@ -273,9 +273,8 @@ std::string comparison_section(const Comparison& c) {
             "is exact. The survey is the reference (true positive + false negative). Runout is the horizontal length "
             "along {} to the farthest point of each outline; reach is the straight distance from the path's start.\n\n",
             c.survey, c.cell, c.limit,
-            c.path.empty()
-                ? std::string("no known path")
-                : (c.path_source.find("steepest") == 0 ? "the " + c.path_source : "`" + c.path_source + "`"));
+            c.path.empty() ? std::string("no known path")
+                           : (c.path_is_given ? "`" + c.path_source + "`" : "the " + c.path_source));
     if (c.extents) text += extent_table(c);
     text += deposit_table(c) + bed_change_table(c);
     for (const std::string& remark : c.remarks) text += fmt::format("- {}\n", remark);

@@ -191,7 +191,7 @@ void add_overlay(const FigureSource& source, Gallery& gallery) {
         MapFigure map = map_of(source, *peak, "simulated and surveyed extent", nullptr);
         map.field_label = "peak depth [m]";
         map.lines.clear();
-        if (!source.runout_path.empty()) map.lines.push_back({"runout path", source.runout_path, MapLine::path});
+        for (const Polyline& path : source.runout_paths) map.lines.push_back({"runout path", path, MapLine::path});
         const Raster covered = *ever_covered(source.rasters);
         map.simulated = pixel_outline(covered, source.footprint_depth);
         const Overlap areas = overlap(covered, source.footprint_depth, rings_of(*source.survey));

@@ -26,7 +26,7 @@ struct FigureSource {
     double footprint_depth = 0.1;        ///< [m]
     std::optional<Polygons> survey;
     std::optional<Vec2> start;           ///< where material came in, where nothing lay at the start [m]
-    Polyline runout_path;                ///< drawn in the overlay with the survey; empty: none
+    std::vector<Polyline> runout_paths;  ///< drawn in the overlay with the survey
     std::string comparison = "compare";  ///< names the pictures of the comparison, and its table of bed changes
     std::vector<Profile> profiles;
     std::vector<Gauge> gauges;

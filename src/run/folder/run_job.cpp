@@ -215,7 +215,7 @@ FigureSource figure_source(const Scene& scene, const Raster& bed, const fs::path
     source.rasters = rasters;
     source.footprint_depth = scene.output.footprint_depth;
     source.survey = scene.survey;
-    if (record.comparison) source.runout_path = record.comparison->path;
+    if (record.comparison) source.runout_paths = paths_of(*record.comparison);
     source.profiles = scene.profiles;
     source.gauges = scene.gauges;
     source.sections = scene.sections;
