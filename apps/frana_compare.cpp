@@ -153,7 +153,7 @@ RunAndSurvey read_run_and_survey(const CompareOptions& options) {
         read_survey_files(files_of(options), find_product(source.rasters, "peak_depth")->raster, read.warnings);
     const std::optional<Raster> later = released_later(options, source, read.warnings);
     read.comparison = compare_rasters(source.rasters, source.bed.values.empty() ? nullptr : &source.bed,
-                                      source.footprint_depth, survey, source.start, later ? &*later : nullptr);
+                                      source.footprint_depth, survey, source.starts, later ? &*later : nullptr);
     if (read.comparison.extents) source.survey = survey.footprint;
     source.runout_paths = paths_of(read.comparison);
     return read;

@@ -134,7 +134,7 @@ void read_runout_path(const CaseFile& run_case, FigureSource& source, std::vecto
         Survey survey = read_survey_files(files, peak->raster, said_by_the_run);
         survey.footprint = *source.survey;
         source.runout_paths =
-            paths_of(compare_rasters(source.rasters, &source.bed, source.footprint_depth, survey, source.start));
+            paths_of(compare_rasters(source.rasters, &source.bed, source.footprint_depth, survey, source.starts));
     } catch (const UserError& error) {
         warnings.push_back(fmt::format("the runout path is not shown: {}", error.what()));
     }
@@ -306,7 +306,7 @@ FigureSource read_finished_run(const fs::path& run_dir, std::vector<std::string>
     FigureSource source;
     source.run_dir = run_dir;
     read_record(run_dir, source);
-    source.start = start_in(json_in(run_dir / "run.json"));
+    source.starts = starts_in(json_in(run_dir / "run.json"));
     source.rasters = read_rasters(run_dir);
     read_bed(source, warnings);
     return source;

@@ -1,4 +1,5 @@
 // Runout, deposits and whole comparisons with answers found by hand.
+#include <array>
 #include <cmath>
 
 #include "catch.h"
@@ -346,11 +347,38 @@ TEST_CASE("Where nothing lay at the start, the path begins where material comes 
     survey.footprint = {{box(50, 50, 300, 150)}, "", "survey.geojson"};
     SimulatedRun run = flow.run();
     CHECK(std::isnan(compare(run, survey).trace.runout));
-    run.start = Vec2(66, 104);
+    run.starts = {Vec2(66, 104)};
     const Comparison c = compare(run, survey);
     CHECK(c.path_source == "steepest path from where material comes in");
     CHECK(c.trace.runout == Approx(350 - 65));
     CHECK(c.surveyed_runout == Approx(300 - 65));
+}
+
+TEST_CASE("Where material comes in at two places, both flows have a runout", "[compare]") {
+    ComparedFlow flow = in_valleys({{35, 50, 100}, {165, 50, 100}}, 500);
+    for (Index k = 0; k < slope_grid().size(); ++k)  // the second stops earlier
+        if (slope_grid().y(k / 60) > 120.0 && slope_grid().x(k % 60) > 300.0)
+            flow.peak.values[static_cast<std::size_t>(k)] = 0.0;
+    flow.last = flow.peak;
+    Survey survey;
+    survey.footprint = {{box(50, 20, 450, 50), box(50, 150, 350, 180)}, "", "survey.geojson"};
+    SimulatedRun run = flow.run();
+    for (double& t : flow.arrival.values)
+        if (t == 0.0) t = 1.0;
+    run.starts = {Vec2(75, 165), Vec2(75, 35)};
+    const auto found = [&] {
+        const Comparison c = compare(run, survey);
+        REQUIRE(c.others.size() == 1);
+        return std::array{c.trace.runout, c.surveyed_runout, c.trace.reach, c.others[0].simulated,
+                          c.others[0].surveyed};
+    };
+    // Corners of outlines are half a width aside of the start.
+    const double reach = std::hypot(300.0 - 75.0, 15.0);
+    CHECK(found() == std::array{225.0, 275.0, reach, 425.0, 375.0});
+    // A release at the start comes before what enters.
+    flow.arrival.at(7, 3) = 0.0;
+    run.starts = {Vec2(75, 165)};
+    CHECK(found() == std::array{425.0, 375.0, std::hypot(425.0, 15.0), 225.0, 275.0});
 }
 
 TEST_CASE("A given path is used downhill, and its end is not the end of the runout") {

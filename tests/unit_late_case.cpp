@@ -94,9 +94,27 @@ TEST_CASE("What the front is measured from has a name", "[scene][late][inflow]")
     const auto origin = [](const std::string& text) { return front_origin(built(text)); };
     const std::string inflow =
         "[[inflow]]\nname = \"torrent\"\nline = [[1150, 2060], [1150, 2080]]\nvolume = 500\nvelocity = 3\n";
-    CHECK(origin(kFirst + inflow) == "the release's centre");
-    CHECK(origin(inflow + kFirst + "at = 5\n") == "the middle of inflow torrent");
+    CHECK(origin(kFirst) == "the release's centre");
+    CHECK(origin(inflow) == "the middle of inflow torrent");
     CHECK(origin(kFirst + "at = 5\n") == "the centre of what is released later");
+    // What comes in elsewhere is a front as well, as far off as that place is.
+    CHECK(origin(kFirst + inflow) == "the release's centre, of all that comes in anywhere");
+    CHECK(origin(inflow + kFirst + "at = 5\n") == "the middle of inflow torrent, of all that comes in anywhere");
+}
+
+TEST_CASE("Each inflow and late release begins a flow, in the order in which they come", "[scene][late][inflow]") {
+    const auto starts = [](const std::string& text) { return starts_of_what_comes_in(built(text)); };
+    CHECK(starts(kFirst + kSecond).empty());
+    CHECK(starts(kFirst + kSecond + "when_hit = true\n").empty());
+    CHECK(starts(kFirst + kSecond + "at = 7.5\n").size() == 1);
+    const std::string inflow =
+        "[[inflow]]\nname = \"torrent\"\nline = [[1150, 2060], [1150, 2080]]\n"
+        "volume = 500\nvelocity = 3\n";
+    const std::vector<Vec2> all = starts(inflow + kFirst + "at = 5\n" + kSecond + "at = 1\n");
+    REQUIRE(all.size() == 3);
+    CHECK(all[0].x() == Approx(1150.0));  // from the start on
+    CHECK(all[1].x() < 1045.0);
+    CHECK(all[2].x() > 1045.0);
 }
 
 TEST_CASE("A later release that stands in the elevation model leaves it when it enters", "[scene][late][scar]") {

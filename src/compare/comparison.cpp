@@ -48,12 +48,14 @@ private:
         result_.trace = scores(ever, result_.outline);
         if (lying_) result_.final = scores(*lying_, pixel_outline(*lying_, run_.limit));
         if (!result_.path.empty()) {
-            const std::vector<FrontAlong> surveyed = fronts_of_survey(), simulated = fronts_of(result_.outline);
+            const std::vector<Rings> of_survey = rings_of_survey(), of_flows = rings_of_flows(result_.outline);
+            const std::vector<FrontAlong> surveyed = fronts_along(paths_, of_survey, result_.cell),
+                                          simulated = fronts_along(paths_, of_flows, result_.cell);
             surveyed_front_ = surveyed.front(), simulated_front_ = simulated.front();
             for (std::size_t n = 1; n < paths_.size(); ++n)
                 result_.others.push_back({paths_[n], simulated[n].place, surveyed[n].place});
             result_.surveyed_runout = surveyed_front_.place;
-            result_.surveyed_reach = farthest_from(result_.path.front(), rings_);
+            result_.surveyed_reach = farthest_from(result_.path.front(), of_survey.front());
         }
         if (survey_.deposit && lying_) result_.deposit = deposit_errors(*lying_, *survey_.deposit, run_.limit);
     }
@@ -72,15 +74,15 @@ private:
                 remark("{}: the path is drawn uphill and was turned round", survey_.path_source);
             }
         } else if (run_.bed && run_.arrival_time) {
-            const std::optional<Vec2> release = release_middle(*run_.arrival_time),
-                                      start = release ? release : run_.start;
-            if (start) result_.path = steepest_path(*run_.bed, *start);
-            released_ = release.has_value();
+            constexpr std::size_t most = 9;
+            starts_ = release_middles(*run_.arrival_time, most);
+            released_ = !starts_.empty();
+            starts_.insert(starts_.end(), run_.starts.begin(), run_.starts.end());
+            if (!starts_.empty()) result_.path = steepest_path(*run_.bed, starts_.front());
             if (length_of(result_.path) > 0.0)
-                result_.path_source =
-                    fmt::format("steepest path from {}", release ? "the release" : "where material comes in");
+                result_.path_source = fmt::format("steepest path from {}", begins_at());
             else
-                result_.path.clear(), released_ = false;
+                result_.path.clear();
         }
         if (result_.path.empty())
             remark("no steepest path from the start of the flow is known, so no {}; give one with --path",
@@ -88,34 +90,31 @@ private:
     }
 
     void find_paths(const Raster& ever) {
-        constexpr std::size_t most = 9;
         paths_ = {result_.path};
         if (result_.path.empty() || survey_.path) return;
-        const std::vector<Vec2> starts =
-            released_ ? release_middles(*run_.arrival_time, most) : std::vector<Vec2>{result_.path.front()};
-        tracks_.emplace(ever, run_.limit, starts);
+        tracks_.emplace(ever, run_.limit, starts_);
         paths_.clear();
-        for (const RunoutPath& path : runout_paths(*run_.bed, ever, run_.limit, *tracks_, starts)) {
+        for (const RunoutPath& path : runout_paths(*run_.bed, ever, run_.limit, *tracks_, starts_)) {
             if (path.of_flow) follow_flow(paths_.empty(), path);
             paths_.push_back(path.line);
         }
         result_.path = paths_.front();
     }
 
+    const char* begins_at() const { return released_ ? "the release" : "where material comes in"; }
+
     void follow_flow(bool first, const RunoutPath& path) {
-        if (first) result_.path_source = "track of the flow from the release", follows_flow_ = true;
+        if (first) result_.path_source = fmt::format("track of the flow from {}", begins_at()), follows_flow_ = true;
         result_.remarks.push_back(remark_on_track(path) +
                                   "; other runs may have other tracks, so give one with --path to compare them");
     }
 
-    std::vector<FrontAlong> fronts_of_survey() const {
-        return tracks_ ? fronts_of_polygons(paths_, survey_.footprint, result_.cell)
-                       : fronts_along(paths_, rings_, result_.cell);
+    std::vector<Rings> rings_of_survey() const {
+        return tracks_ ? rings_of_polygons(paths_, survey_.footprint, result_.cell) : std::vector<Rings>{rings_};
     }
 
-    std::vector<FrontAlong> fronts_of(const Rings& outline) const {
-        return tracks_ ? fronts_of_parts(paths_, *tracks_, outline, result_.cell)
-                       : fronts_along(paths_, outline, result_.cell);
+    std::vector<Rings> rings_of_flows(const Rings& outline) const {
+        return tracks_ ? rings_of_parts(paths_, *tracks_, outline) : std::vector<Rings>{outline};
     }
 
     /// NaN where there is no terrain.
@@ -132,8 +131,9 @@ private:
         scores.areas = overlap(depth, run_.limit, rings_);
         scores.boundary = distance_between(outline, rings_, step_);
         if (!result_.path.empty()) {
-            scores.runout = fronts_of(outline).front().place;
-            scores.reach = farthest_from(result_.path.front(), outline);
+            const std::vector<Rings> rings = rings_of_flows(outline);
+            scores.runout = fronts_along(paths_, rings, result_.cell).front().place;
+            scores.reach = farthest_from(result_.path.front(), rings.front());
         }
         return scores;
     }
@@ -207,7 +207,7 @@ private:
                 fmt::format("{}{} / {} from {:.10g}, {:.10g}", runouts.empty() ? "" : "; ", metres(other.simulated),
                             metres(other.surveyed), other.path.front().x(), other.path.front().y());
         remark(
-            "flows from several releases do not meet, or went down different valleys; the runout is that from {:.10g}, "
+            "flows from several places do not meet, or went down different valleys; the runout is that from {:.10g}, "
             "{:.10g}. A surveyed polygon counts for the paths that start in it. Runouts of the others, simulated / "
             "surveyed: {}",
             result_.path.front().x(), result_.path.front().y(), runouts);
@@ -242,7 +242,8 @@ private:
     const Survey& survey_;
     Rings rings_;
     bool follows_flow_ = false;         ///< the path is the track of the flow itself
-    bool released_ = false;             ///< whether the path is the steepest one of the largest release
+    bool released_ = false;             ///< the first start is that of the largest release
+    std::vector<Vec2> starts_;          ///< of releases, then of what came in later
     std::vector<Polyline> paths_;       ///< the path, then those of releases in other valleys
     std::optional<FlowTracks> tracks_;  ///< of what was ever covered, where the paths are not the survey's
     FrontAlong surveyed_front_, simulated_front_;

@@ -20,7 +20,7 @@ struct SimulatedRun {
     double limit = 0.1;                       ///< deeper counts as covered [m]
     const Raster* bed_change = nullptr;       ///< or null: the bed is rock
     const Raster* deposited_depth = nullptr;  ///< or null: nothing became bed; lies with the final depth
-    std::optional<Vec2> start;                ///< of the steepest path where nothing was released at the start
+    std::vector<Vec2> starts;                 ///< where material came in that was not released at the start
     const Raster* released_later = nullptr;   ///< or null; above 0 where a release entered after the start
 };
 

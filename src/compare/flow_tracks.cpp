@@ -53,14 +53,6 @@ double covered_length(const Polyline& path, const FlowTracks& tracks, Index part
     return covered;
 }
 
-/// The farther of two.
-void join(FrontAlong& front, const FrontAlong& other) {
-    front.place = std::fmax(front.place, other.place);
-    front.off_path = std::max(front.off_path, other.off_path);
-    front.off_end = std::max(front.off_end, other.off_end);
-    front.meets_end = front.meets_end || other.meets_end;
-}
-
 }  // namespace
 
 FlowTracks::FlowTracks(const Raster& depth, double limit, const std::vector<Vec2>& starts)
@@ -193,18 +185,20 @@ std::string remark_on_track(const RunoutPath& path) {
         path.line.front().x(), path.line.front().y(), path.front.x(), path.front.y());
 }
 
-std::vector<FrontAlong> fronts_of_parts(const std::vector<Polyline>& paths, const FlowTracks& tracks,
-                                        const Rings& outline, double step) {
+std::vector<Rings> rings_of_parts(const std::vector<Polyline>& paths, const FlowTracks& tracks, const Rings& outline) {
     std::vector<std::optional<Index>> parts;
     for (const Polyline& path : paths) parts.push_back(tracks.part_at(path.front()));
-    return fronts_along(paths, outline, step, [&](const Vec2& p, std::size_t n) {
-        const std::optional<Index> part = tracks.part_at(p);
-        return part == parts[n] || std::find(parts.begin(), parts.end(), part) == parts.end();
-    });
+    std::vector<Rings> rings(paths.size());
+    for (const auto& ring : outline) {
+        const std::optional<Index> part = tracks.part_at(ring.front());
+        const bool is_nobodys = std::find(parts.begin(), parts.end(), part) == parts.end();
+        for (std::size_t n = 0; n < paths.size(); ++n)
+            if (is_nobodys || part == parts[n]) rings[n].push_back(ring);
+    }
+    return rings;
 }
 
-std::vector<FrontAlong> fronts_of_polygons(const std::vector<Polyline>& paths, const Polygons& polygons, double step) {
-    std::vector<FrontAlong> fronts(paths.size());
+std::vector<Rings> rings_of_polygons(const std::vector<Polyline>& paths, const Polygons& polygons, double step) {
     const auto starts_in = [&](const Polygon& polygon, std::size_t n) {
         return distance_to(polygon, paths[n].front()) <= step;
     };
@@ -212,25 +206,26 @@ std::vector<FrontAlong> fronts_of_polygons(const std::vector<Polyline>& paths, c
     for (std::size_t n = 0; n < paths.size(); ++n)
         starts_in_any.push_back(std::any_of(polygons.parts.begin(), polygons.parts.end(),
                                             [&](const Polygon& polygon) { return starts_in(polygon, n); }));
+    std::vector<Rings> rings(paths.size());
     for (const Polygon& polygon : polygons.parts) {
         std::vector<char> starts;
         for (std::size_t n = 0; n < paths.size(); ++n) starts.push_back(starts_in(polygon, n));
         const bool is_nobodys = std::find(starts.begin(), starts.end(), char{1}) == starts.end();
-        const auto may_count = [&](const Vec2&, std::size_t n) {
-            return is_nobodys || starts[n] != 0 || starts_in_any[n] == 0;
-        };
-        const std::vector<FrontAlong> of_it =
-            fronts_along(paths, rings_of(Polygons{{polygon}, "", ""}), step, may_count);
-        for (std::size_t n = 0; n < paths.size(); ++n) join(fronts[n], of_it[n]);
+        const Rings of_it = rings_of(Polygons{{polygon}, "", ""});
+        for (std::size_t n = 0; n < paths.size(); ++n)
+            if (is_nobodys || starts[n] != 0 || starts_in_any[n] == 0)
+                rings[n].insert(rings[n].end(), of_it.begin(), of_it.end());
     }
-    return fronts;
+    return rings;
 }
 
 FrontAlong front_of_own_part(const Polyline& path, const FlowTracks& tracks, const Rings& outline, double step) {
     const std::optional<Index> part = tracks.part_at(path.front());
-    if (!part) return {};
-    return fronts_along({path}, outline, step, [&](const Vec2& p, std::size_t) { return tracks.part_at(p) == part; })
-        .front();
+    Rings own;
+    if (part)
+        for (const auto& ring : outline)
+            if (tracks.part_at(ring.front()) == part) own.push_back(ring);
+    return front_along(path, own, step);
 }
 
 }  // namespace frana

@@ -51,14 +51,12 @@ std::vector<RunoutPath> runout_paths(const Raster& bed, const Raster& depth, dou
 /// What to say of a path that is the track of the flow.
 std::string remark_on_track(const RunoutPath& path);
 
-/// How far what was covered reaches along paths. A part that a path starts in counts for the paths that start in it;
-/// else each point of the outline counts for the nearest path.
-std::vector<FrontAlong> fronts_of_parts(const std::vector<Polyline>& paths, const FlowTracks& tracks,
-                                        const Rings& outline, double step);
+/// The rings of an outline that count for each path. A part that paths start in counts for those, other parts for all.
+std::vector<Rings> rings_of_parts(const std::vector<Polyline>& paths, const FlowTracks& tracks, const Rings& outline);
 
 /// The same of surveyed polygons. One in which paths start, or within `step` [m] of its rim, counts for those, and for
 /// paths that start in none.
-std::vector<FrontAlong> fronts_of_polygons(const std::vector<Polyline>& paths, const Polygons& polygons, double step);
+std::vector<Rings> rings_of_polygons(const std::vector<Polyline>& paths, const Polygons& polygons, double step);
 
 /// How far the one part in which a path starts reaches along it; NaN where the path starts on dry ground.
 FrontAlong front_of_own_part(const Polyline& path, const FlowTracks& tracks, const Rings& outline, double step);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <queue>
 
 #include "base/error.h"
@@ -169,6 +168,16 @@ Vec2 middle_of(const std::vector<Index>& nodes, const GridGeometry& g) {
     }));
 }
 
+/// Calls f(point) along the edges of a ring, a step apart at most.
+template <class F>
+void for_each_point(const std::vector<Vec2>& ring, double step, F&& f) {
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+        const Vec2 edge = ring[(k + 1) % ring.size()] - ring[k];
+        const int parts = std::max(1, static_cast<int>(std::ceil(edge.norm() / step)));
+        for (int part = 0; part < parts; ++part) f(ring[k] + static_cast<double>(part) / parts * edge);
+    }
+}
+
 void add_to(FrontAlong& front, const PlaceAlong& at) {
     if (!(at.place <= front.place)) front.place = at.place;
     front.meets_end = front.meets_end || at.at_end;
@@ -270,32 +279,32 @@ PlaceAlong place_along(const Polyline& path, const Vec2& p) {
     return nearest;
 }
 
-std::vector<FrontAlong> fronts_along(const std::vector<Polyline>& paths, const Rings& outline, double step,
-                                     const MayCount& may_count) {
+std::vector<FrontAlong> fronts_along(const std::vector<Polyline>& paths, const std::vector<Rings>& outlines,
+                                     double step) {
+    expect(paths.size() == outlines.size(), "each path has its rings");
     for (const Polyline& path : paths) expect(path.size() >= 2 && length_of(path) > 0.0, "a path has a length");
-    std::vector<FrontAlong> fronts(paths.size());
-    std::vector<PlaceAlong> places(paths.size());
-    const auto add = [&](const Vec2& p) {
-        double nearest = std::numeric_limits<double>::infinity();
-        for (std::size_t n = 0; n < paths.size(); ++n) {
-            places[n] = !may_count || may_count(p, n) ? place_along(paths[n], p) : PlaceAlong{};
-            nearest = std::min(nearest, places[n].distance);
-        }
-        if (!std::isfinite(nearest)) return;
-        for (std::size_t n = 0; n < paths.size(); ++n)
-            if (places[n].distance <= nearest + (paths.size() > 1 ? step : 0.0)) add_to(fronts[n], places[n]);
+    const auto has = [&](std::size_t n, const std::vector<Vec2>& ring) {
+        return std::find(outlines[n].begin(), outlines[n].end(), ring) != outlines[n].end();
     };
-    for (const auto& ring : outline)
-        for (std::size_t k = 0; k < ring.size(); ++k) {
-            const Vec2 edge = ring[(k + 1) % ring.size()] - ring[k];
-            const int parts = std::max(1, static_cast<int>(std::ceil(edge.norm() / step)));
-            for (int part = 0; part < parts; ++part) add(ring[k] + static_cast<double>(part) / parts * edge);
+    std::vector<FrontAlong> fronts(paths.size());
+    for (std::size_t n = 0; n < paths.size(); ++n)
+        for (const auto& ring : outlines[n]) {
+            std::vector<std::size_t> rivals;
+            for (std::size_t m = 0; m < paths.size(); ++m)
+                if (m != n && has(m, ring)) rivals.push_back(m);
+            for_each_point(ring, step, [&](const Vec2& p) {
+                const PlaceAlong at = place_along(paths[n], p);
+                const auto is_nearer = [&](std::size_t m) {
+                    return place_along(paths[m], p).distance + step < at.distance;
+                };
+                if (std::none_of(rivals.begin(), rivals.end(), is_nearer)) add_to(fronts[n], at);
+            });
         }
     return fronts;
 }
 
 FrontAlong front_along(const Polyline& path, const Rings& outline, double step) {
-    return fronts_along({path}, outline, step).front();
+    return fronts_along({path}, {outline}, step).front();
 }
 
 double reach_along(const Polyline& path, const Rings& outline, double step) {

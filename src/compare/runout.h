@@ -1,7 +1,6 @@
 #pragma once
 // How far an extent reaches along a path.
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -56,13 +55,10 @@ struct FrontAlong {
 /// `step` [m]: how closely the outline's edges are sampled.
 FrontAlong front_along(const Polyline& path, const Rings& outline, double step);
 
-/// Whether a point of an outline may count for one of several paths.
-using MayCount = std::function<bool(const Vec2& point, std::size_t path)>;
-
-/// Of several paths, each by the points that are nearest to it. Behind a junction paths are one: a point counts for each
-/// path that is no farther from it than the nearest one and a `step`. Without `may_count` each may.
-std::vector<FrontAlong> fronts_along(const std::vector<Polyline>& paths, const Rings& outline, double step,
-                                     const MayCount& may_count = {});
+/// Of several paths, each by its own rings and the points of them that are nearest to it. Behind a junction paths are one:
+/// a point counts where no path for which its ring counts is nearer by more than a `step`.
+std::vector<FrontAlong> fronts_along(const std::vector<Polyline>& paths, const std::vector<Rings>& outlines,
+                                     double step);
 
 /// The place of that front alone: the path's horizontal length up to there [m].
 double reach_along(const Polyline& path, const Rings& outline, double step);

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "compare/deposit.h"
+#include "compare/flow_tracks.h"
 #include "compare/overlap.h"
 #include "compare/runout.h"
 #include "observe/budget.h"
@@ -18,6 +19,7 @@
 #include "scene/build_scene.h"
 #include "scene/flow_start.h"
 #include "scene/taken_of_bed.h"
+#include "terrain/places.h"
 
 namespace frana {
 namespace {
@@ -78,21 +80,47 @@ void require_tables(const EnsemblePlan& plan, const CaseFile& file) {
 struct Way {
     std::optional<Vec2> start;
     Polyline path;
+    std::vector<Polyline> others;  ///< from where else material is or comes in
 };
+
+/// Middles of the releases, the largest first: of the terrain's nodes that are nearest to particles.
+std::vector<Vec2> middles_of_releases(const Scene& scene, const GridGeometry& g) {
+    constexpr std::size_t most = 9;
+    Raster released;
+    released.geometry = g, released.values.assign(static_cast<std::size_t>(g.size()), Raster::nodata);
+    for (std::size_t p = 0; p < scene.particles.x.size(); ++p)
+        if (const NodeAt at = nearest_node(g, {scene.particles.x[p], scene.particles.y[p]}); has_node(g, at))
+            released.at(at.i, at.j) = 0.0;
+    return release_middles(released, most);
+}
+
+/// Places where the flow begins. Of one release it is the particle nearest to its middle.
+std::vector<Vec2> starts_of(const Scene& scene, const GridGeometry& g) {
+    std::vector<Vec2> starts = middles_of_releases(scene, g);
+    if (starts.size() == 1) starts.front() = *flow_start(scene);
+    for (const Vec2& start : starts_of_what_comes_in(scene)) starts.push_back(start);
+    return starts;
+}
 
 /// To the edge of those nodes of the terrain: a scene may hold no more of it than where its flow begins.
 Way way_of(const Scene& scene, const GridGeometry& shown) {
-    Way way{flow_start(scene), {}};
-    if (way.start) way.path = steepest_path(bed_over(scene.bed, scene.wider.get(), shown), *way.start);
+    Way way;
+    const std::vector<Vec2> starts = starts_of(scene, shown);
+    if (starts.empty()) return way;
+    const Raster bed = bed_over(scene.bed, scene.wider.get(), shown);
+    way.start = starts.front(), way.path = steepest_path(bed, starts.front());
     if (!(length_of(way.path) > 0.0)) way.path.clear();
+    for (std::size_t n = 1; n < starts.size() && !way.path.empty(); ++n)
+        if (Polyline path = steepest_path(bed, starts[n]); length_of(path) > 0.0) way.others.push_back(std::move(path));
     return way;
 }
 
 /// The base's, so that runs compare. A flow that begins more than a cell from there has its own. That goes over the
 /// ground that it came to, as that of a comparison of the run.
 Way way_of(const Scene& scene, const EnsembleBase& base, const GridGeometry& shown) {
-    const std::optional<Vec2> start = flow_start(scene);
-    if (start && base.start && (*start - *base.start).norm() <= base.whole.cell) return {base.start, base.path};
+    const std::vector<Vec2> starts = starts_of(scene, shown);
+    if (!starts.empty() && base.start && (starts.front() - *base.start).norm() <= base.whole.cell)
+        return {base.start, base.path, base.others};
     return way_of(scene, shown);
 }
 
@@ -107,8 +135,15 @@ void measure_extent(const EnsembleBase& base, const Scene& scene, const Raster& 
     if (outline.empty()) return;
     const Way way = way_of(scene, base, depth.geometry);
     if (!way.start) return;
-    result.reach = farthest_from(*way.start, outline);
-    result.runout = way.path.empty() ? result.reach : reach_along(way.path, outline, cell);
+    if (way.path.empty()) {
+        result.runout = result.reach = farthest_from(*way.start, outline);
+        return;
+    }
+    std::vector<Polyline> paths{way.path};
+    paths.insert(paths.end(), way.others.begin(), way.others.end());
+    const std::vector<Rings> rings = rings_of_parts(paths, FlowTracks(depth, base.footprint_depth, {}), outline);
+    result.reach = farthest_from(*way.start, rings.front());
+    result.runout = fronts_along(paths, rings, cell).front().place;
 }
 
 void measure(const Scene& scene, const EnsembleBase& base, const RunSummary& run, const LastPeaks& peaks,
@@ -214,7 +249,12 @@ EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, co
     base.barriers = scene.barriers;
     base.wider = scene.wider;
     Way way = way_of(scene, base.whole);
-    base.start = way.start, base.path = std::move(way.path);
+    base.start = way.start, base.path = std::move(way.path), base.others = std::move(way.others);
+    if (!base.others.empty())
+        base.remarks.push_back(
+            fmt::format("the flow begins at {} places; runout and reach are those of the flow from {:.10g}, {:.10g}, "
+                        "with all that touches it",
+                        base.others.size() + 1, base.start->x(), base.start->y()));
     base.footprint = scene.survey;
     if (scene.survey) base.survey = rings_of(*scene.survey);
     require_kept_thresholds(plan, base.footprint_depth, "ensemble");

@@ -32,6 +32,8 @@ struct EnsembleBase {
     std::vector<Barrier> barriers;      ///< of the case, which maps show
     Polyline path;                      ///< from there to the edge of all of the terrain, that runouts are measured
                                         ///< along; empty: none is known
+    std::vector<Polyline> others;       ///< from other places where material is or comes in; what flows from there
+                                        ///< and does not touch the flow along the path is none of its runout
     std::vector<std::string> remarks;   ///< made while the case was built
     std::shared_ptr<const WiderTerrain> wider;  ///< that the bed is a part of; nothing: it is all
 };

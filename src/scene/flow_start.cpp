@@ -1,7 +1,9 @@
 #include "scene/flow_start.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 namespace frana {
 namespace {
@@ -57,34 +59,44 @@ double begin_of(const Inflow& inflow) {
     return std::numeric_limits<double>::infinity();
 }
 
-/// Of inflows and late releases the one that comes first. What enters when the flow reaches it begins no flow.
-std::optional<Vec2> middle_of_first(const Scene& scene) {
-    double first = std::numeric_limits<double>::infinity();
-    std::optional<Vec2> middle;
+/// Of inflows and late releases, the one that comes first in front.
+std::vector<Vec2> middles_in_time(const Scene& scene) {
+    std::vector<std::pair<double, Vec2>> all;
     for (const Inflow& inflow : scene.inflows)
-        if (const double begin = begin_of(inflow); begin < first) first = begin, middle = middle_of(inflow);
+        if (const double begin = begin_of(inflow); std::isfinite(begin)) all.emplace_back(begin, middle_of(inflow));
     for (const LateRelease& late : scene.late)
-        if (late.at && *late.at < first && late.seeds.count() > 0) first = *late.at, middle = middle_of(late.seeds);
-    return middle;
+        if (late.at && late.seeds.count() > 0) all.emplace_back(*late.at, middle_of(late.seeds));
+    std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<Vec2> middles;
+    for (const auto& [begin, middle] : all) middles.push_back(middle);
+    return middles;
 }
 
 }  // namespace
 
-std::optional<Vec2> flow_start(const Scene& scene) {
-    if (scene.particles.count() > 0) return middle_of(scene.particles);
-    if (std::optional<Vec2> lake = middle_of_lake(scene)) return lake;
-    return middle_of_first(scene);
+std::vector<Vec2> starts_of_what_comes_in(const Scene& scene) {
+    std::vector<Vec2> starts;
+    if (scene.particles.count() == 0)
+        if (const std::optional<Vec2> lake = middle_of_lake(scene)) starts.push_back(*lake);
+    for (const Vec2& middle : middles_in_time(scene)) starts.push_back(middle);
+    return starts;
 }
 
-std::optional<Vec2> start_of_what_comes_in(const Scene& scene) {
-    return scene.particles.count() > 0 ? std::nullopt : flow_start(scene);
+std::optional<Vec2> flow_start(const Scene& scene) {
+    if (scene.particles.count() > 0) return middle_of(scene.particles);
+    const std::vector<Vec2> starts = starts_of_what_comes_in(scene);
+    return starts.empty() ? std::nullopt : std::optional<Vec2>(starts.front());
 }
 
 std::string front_origin(const Scene& scene) {
-    if (middle_of_lake(scene)) return "the centre of the water at the start";
-    if (scene.particles.count() > 0) return "the release's centre";
-    if (!scene.inflows.empty()) return "the middle of inflow " + scene.inflows.front().name;
-    return scene.late.empty() ? "the terrain's middle" : "the centre of what is released later";
+    const bool lies = scene.particles.count() > 0 || middle_of_lake(scene);
+    const std::size_t places = (lies ? 1 : 0) + middles_in_time(scene).size();
+    std::string origin = middle_of_lake(scene)    ? "the centre of the water at the start"
+                         : lies                   ? "the release's centre"
+                         : !scene.inflows.empty() ? "the middle of inflow " + scene.inflows.front().name
+                         : scene.late.empty()     ? "the terrain's middle"
+                                                  : "the centre of what is released later";
+    return places > 1 ? origin + ", of all that comes in anywhere" : origin;
 }
 
 }  // namespace frana

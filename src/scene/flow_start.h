@@ -2,6 +2,7 @@
 // Where the flow begins: there the path starts that runouts are measured along.
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "scene/scene.h"
 
@@ -12,10 +13,12 @@ namespace frana {
 /// Nothing where nothing flows.
 std::optional<Vec2> flow_start(const Scene& scene);
 
-/// The same where nothing lies on the terrain at the start, nothing otherwise: then a run's rasters tell.
-std::optional<Vec2> start_of_what_comes_in(const Scene& scene);
+/// Where material comes in that a run's rasters do not show at the start: the lake of water alone, then inflows and later
+/// releases by the time at which they begin. What enters when the flow reaches it begins no flow.
+std::vector<Vec2> starts_of_what_comes_in(const Scene& scene);
 
 /// Where the front is measured from (Status::front), for people: "the release's centre", "the middle of inflow torrent".
+/// Where material comes in elsewhere too, that is said.
 std::string front_origin(const Scene& scene);
 
 }  // namespace frana

@@ -422,16 +422,7 @@ std::vector<std::string> DepthAveraged::remarks() const {
                 fmt::format("{}: its {:.6g} m3 did not enter: no flow deeper than {:.3g} m reached it (when_hit)",
                             late.name, late.volume, footprint_depth_));
     if (const std::string grown = remark_on_growth(status_); !grown.empty()) remarks.push_back(grown);
-    if (!fit_) return remarks;
-    constexpr double kLevel = 1e-6;  // [cells]; far above round-off, and currents of it are slow
-    const bool rests = fit_->level_error <= kLevel * flow_.cell;
-    remarks.push_back(
-        fmt::format("masses fitted to the still level: {} nodes, {} iterations, largest change of a point {:.2g}, "
-                    "{} points at their limits; level within {:.2g} m{}",
-                    fit_->rows, fit_->iterations, fit_->largest_change, fit_->clipped, fit_->level_error,
-                    rests ? ""
-                          : ", so the lake does not rest; give more points (particles.per_cell) or a finer "
-                            "grid.cell"));
+    if (fit_) remarks.push_back(remark_on(*fit_, flow_.cell));
     return remarks;
 }
 

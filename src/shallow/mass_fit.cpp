@@ -3,7 +3,10 @@
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "mpm/domain.h"
 #include "mpm/stencil.h"
@@ -129,8 +132,12 @@ void deposit_columns(Flow& flow) {
     depth_pass(flow, {0.0, Vec2(0, 0)});
 }
 
-bool inside(const Flow& flow, Index i, Index j) {
-    return !flow.walls || (i >= 0 && i < flow.grid.nx() && j >= 0 && j < flow.grid.ny());
+/// Whether material can hold a node to the level. It cannot on ground that is higher, such as a barrier within the lake, and
+/// within a cell of an open side, beyond which nothing is.
+bool holds_level(const Flow& flow, Index i, Index j, double level) {
+    const Index edge = flow.walls ? 0 : 2;
+    return i >= edge && j >= edge && i < flow.grid.nx() - edge && j < flow.grid.ny() - edge &&
+           flow.bed.z[flow.grid.at(i, j)] < level;
 }
 
 }  // namespace
@@ -161,7 +168,7 @@ MassFit fit_masses(Flow& flow, double level) {
         std::size_t added = 0;
         for (const Index tile : flow.active.work)
             for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
-                if (!inside(flow, i, j) || !(flow.nodes.flags[k] & kWet)) return;
+                if (!holds_level(flow, i, j, level) || !(flow.nodes.flags[k] & kWet)) return;
                 if (static_cast<bool>(flow.nodes.flags[k] & kMargin) != margin) return;
                 if (margin && !(flow.nodes.depth[k] + flow.bed.z[k] < below)) return;
                 if (margin && std::find(rows.begin(), rows.end(), k) != rows.end()) return;
@@ -171,6 +178,10 @@ MassFit fit_masses(Flow& flow, double level) {
         return added;
     };
     gather_rows(false, 0.0);
+    for (const Index tile : flow.active.work)
+        for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
+            if ((flow.nodes.flags[k] & (kWet | kMargin)) == kWet && !holds_level(flow, i, j, level)) ++fit.left_free;
+        });
     for (int round = 0, refits = 0; round < 4;) {
         system.set_rows(rows);
         Numbers rhs = -system.collect(from);
@@ -198,7 +209,26 @@ MassFit fit_masses(Flow& flow, double level) {
         if (gather_rows(true, level - 1e-13 * std::max(1.0, std::abs(level))) == 0) break;
     }
     fit.rows = static_cast<Index>(rows.size());
+    fit.volume_change = Numbers::Map(flow.columns.mass.data(), flow.columns.count()).sum() / start.sum() - 1.0;
     return fit;
+}
+
+std::string remark_on(const MassFit& fit, double cell) {
+    constexpr double kLevel = 1e-6;         // [cells]; far above round-off, and currents of it are slow
+    constexpr double kNoticeable = 0.0005;  // of the volume: as percents are rounded
+    std::string text = fmt::format(
+        "masses fitted to the still level: {} nodes, {} iterations, largest change of a point {:.2g}, {} points at "
+        "their "
+        "limits; level within {:.2g} m",
+        fit.rows, fit.iterations, fit.largest_change, fit.clipped, fit.level_error);
+    if (std::abs(fit.volume_change) > kNoticeable)
+        text += fmt::format("; the lake has {:.1f} % {} than what was given", 100.0 * std::abs(fit.volume_change),
+                            fit.volume_change > 0.0 ? "more" : "less");
+    if (fit.level_error <= kLevel * cell) return text;
+    return text + (fit.left_free > 0 ? "; nothing holds it at open sides and on ground above the level, so it does not "
+                                       "rest there"
+                                     : ", so the lake does not rest; give more points (particles.per_cell) or a finer "
+                                       "grid.cell");
 }
 
 }  // namespace frana

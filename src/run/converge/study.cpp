@@ -70,8 +70,7 @@ Path path_of(const RunFiles& finest, const Raster& bed, double limit, std::vecto
     constexpr std::size_t most = 9;
     Path path;
     std::vector<Vec2> starts = release_middles(finest.raster("arrival_time"), most);
-    if (starts.empty())
-        if (const std::optional<Vec2> start = start_in(finest.record)) starts.push_back(*start);
+    for (const Vec2& start : starts_in(finest.record)) starts.push_back(start);
     if (!starts.empty()) path.start = starts.front();
     if (!path.start) {
         remarks.push_back(
@@ -86,7 +85,7 @@ Path path_of(const RunFiles& finest, const Raster& bed, double limit, std::vecto
         if (paths.front().of_flow) remarks.push_back("on the finest cell " + remark_on_track(paths.front()));
         if (paths.size() > 1)
             remarks.push_back(fmt::format(
-                "flows from several releases do not meet, or went down different valleys; the runout is that from "
+                "flows from several places do not meet, or went down different valleys; the runout is that from "
                 "{:.10g}, {:.10g}",
                 starts.front().x(), starts.front().y()));
         return path;
@@ -110,12 +109,15 @@ CellFigures figures_of(const RunFiles& run, const RunFiles& finest, Path& path, 
     const Rings outline = pixel_outline(covered, limit);
     CellFigures figures;
     figures.cell = peak.geometry.cell;
-    figures.reach = path.start ? farthest_from(*path.start, outline) : Raster::nodata;
-    figures.runout = figures.reach;
-    if (!path.line.empty()) {
+    if (path.line.empty()) {
+        figures.reach = path.start ? farthest_from(*path.start, outline) : Raster::nodata;
+        figures.runout = figures.reach;
+    } else {
         std::vector<Polyline> lines{path.line};
         lines.insert(lines.end(), path.others.begin(), path.others.end());
-        const FrontAlong front = fronts_of_parts(lines, FlowTracks(covered, limit, {}), outline, figures.cell).front();
+        const std::vector<Rings> rings = rings_of_parts(lines, FlowTracks(covered, limit, {}), outline);
+        figures.reach = farthest_from(*path.start, rings.front());
+        const FrontAlong front = fronts_along(lines, rings, figures.cell).front();
         figures.runout = front.place;
         if (path.turn.empty()) path.turn = remark_on_turn(front, noticeable * figures.cell);
     }

@@ -179,10 +179,10 @@ std::optional<Raster> solids_at_end(const std::vector<ProductRaster>& rasters) {
 }
 
 Comparison compare_rasters(const std::vector<ProductRaster>& rasters, const Raster* bed, double limit,
-                           const Survey& survey, const std::optional<Vec2>& start, const Raster* later) {
+                           const Survey& survey, const std::vector<Vec2>& starts, const Raster* later) {
     const std::optional<Raster> solids = solids_at_end(rasters);
     SimulatedRun run;
-    run.start = start;
+    run.starts = starts;
     run.released_later = later;
     run.peak_depth = raster_named(rasters, "peak_depth");
     run.final_depth = solids ? &*solids : nullptr;

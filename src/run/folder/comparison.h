@@ -14,11 +14,10 @@ namespace frana {
 /// What lies at the end without free water: all but that is a deposit. Nothing without that raster [m].
 std::optional<Raster> solids_at_end(const std::vector<ProductRaster>& rasters);
 
-/// The run's rasters held against a survey that was read. `bed` is null when the terrain is not known; `start` and `later`:
-/// SimulatedRun's `start` and `released_later`.
+/// The run's rasters held against a survey that was read. `bed` is null when the terrain is not known; `starts` and `later`:
+/// SimulatedRun's `starts` and `released_later`.
 Comparison compare_rasters(const std::vector<ProductRaster>& rasters, const Raster* bed, double limit,
-                           const Survey& survey, const std::optional<Vec2>& start = std::nullopt,
-                           const Raster* later = nullptr);
+                           const Survey& survey, const std::vector<Vec2>& starts = {}, const Raster* later = nullptr);
 
 /// Reads the files onto the grid of `like` (a raster of the run); any may be empty. Remarks go to `log`.
 /// UserError for a file that cannot be used.

@@ -15,12 +15,16 @@ bool lists_files(const Json& record) {
     return record.is_object() && record.contains("files") && record["files"].is_array();
 }
 
-std::optional<Vec2> start_in(const Json& record) {
+std::vector<Vec2> starts_in(const Json& record) {
     using namespace nlohmann::literals;
-    if (!record.is_object()) return std::nullopt;
-    const Json start = record.value("/results/start"_json_pointer, Json());
-    if (!start.is_array() || start.size() != 2 || !start[0].is_number() || !start[1].is_number()) return std::nullopt;
-    return Vec2(start[0].get<double>(), start[1].get<double>());
+    if (!record.is_object()) return {};
+    Json starts = record.value("/results/starts"_json_pointer, Json());
+    if (!starts.is_array()) starts = Json::array({record.value("/results/start"_json_pointer, Json())});  // until 0.1
+    std::vector<Vec2> places;
+    for (const Json& start : starts)
+        if (start.is_array() && start.size() == 2 && start[0].is_number() && start[1].is_number())
+            places.emplace_back(start[0].get<double>(), start[1].get<double>());
+    return places;
 }
 
 }  // namespace frana

@@ -15,6 +15,6 @@ nlohmann::ordered_json json_in(const std::filesystem::path& file);
 bool lists_files(const nlohmann::ordered_json& record);
 
 /// Where what came in by inflows or later began to flow, by a run.json. For a run without material at the start.
-std::optional<Vec2> start_in(const nlohmann::ordered_json& record);
+std::vector<Vec2> starts_in(const nlohmann::ordered_json& record);
 
 }  // namespace frana

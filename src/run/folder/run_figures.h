@@ -25,7 +25,7 @@ struct FigureSource {
     std::vector<ProductRaster> rasters;  ///< peak_depth, peak_speed, final_depth are drawn
     double footprint_depth = 0.1;        ///< [m]
     std::optional<Polygons> survey;
-    std::optional<Vec2> start;           ///< where material came in, where nothing lay at the start [m]
+    std::vector<Vec2> starts;            ///< where material came in that did not lie at the start [m]
     std::vector<Polyline> runout_paths;  ///< drawn in the overlay with the survey
     std::string comparison = "compare";  ///< names the pictures of the comparison, and its table of bed changes
     std::vector<Profile> profiles;

@@ -161,7 +161,7 @@ void compare_with_survey(const Scene& scene, const Raster& bed, const fs::path& 
         Survey survey = read_survey_files(others, peak, record.warnings);
         survey.footprint = *scene.survey;
         const std::optional<Raster> later = released_later_on(record.release_sources, record.extras.late, peak);
-        Comparison comparison = compare_rasters(rasters, &bed, scene.output.footprint_depth, survey, record.start,
+        Comparison comparison = compare_rasters(rasters, &bed, scene.output.footprint_depth, survey, record.starts,
                                                 later ? &*later : nullptr);
         write_scores(run_dir, run_dir / "compare.json", comparison);
         if (scene.output.vtk)

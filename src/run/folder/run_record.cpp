@@ -18,6 +18,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json places_in(const std::vector<Vec2>& places) {
+    Json json = Json::array();
+    for (const Vec2& place : places) json.push_back({place.x(), place.y()});
+    return json;
+}
+
 /// Values of a given key as text, with its unit from the parameter table.
 std::vector<GivenKey> given_keys(const CaseFile& file) {
     std::vector<GivenKey> rows;
@@ -144,7 +150,10 @@ Json results_json(const RunRecord& record) {
             {"footprint_area", record.footprint_area},
             {"footprint_depth", record.footprint_depth},
             {"flow_width", std::isfinite(record.flow_width) ? Json(record.flow_width) : Json(nullptr)},
-            {"start", record.start ? Json{record.start->x(), record.start->y()} : Json(nullptr)},
+            {"start", record.particles == 0 && !record.starts.empty()
+                          ? Json{record.starts.front().x(), record.starts.front().y()}
+                          : Json(nullptr)},
+            {"starts", places_in(record.starts)},
             {"final_max_depth", record.final_depth},
             {"final_max_flow_depth", record.final_flow_depth},
             {"peak_pressure", record.peak_pressure},
@@ -179,7 +188,7 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     record.end = record.whole_end = scene.end;
     if (file.given("time.end")) record.whole_end = file.number("time.end");
     record.footprint_depth = scene.output.footprint_depth;
-    record.start = start_of_what_comes_in(scene);
+    record.starts = starts_of_what_comes_in(scene);
     record.front_origin = front_origin(scene);
     record.page = asks_for_page(file);
     record.by_trees_alone = scene.forest && !scene.deposition;

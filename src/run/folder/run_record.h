@@ -57,7 +57,7 @@ struct RunRecord {
     double final_flow_depth = 0.0;  ///< deepest flow at the end [m]
     bool by_trees_alone = false;    ///< what became bed is what trees held back: there is a forest and no deposition
     double taken_of_bed = 0.0;      ///< of that which was there at the start, not of what the flow had left behind [kg]
-    std::optional<Vec2> start;      ///< of the path of runouts, where nothing lay at the start
+    std::vector<Vec2> starts;       ///< of paths of runouts, where material came in that did not lie at the start
     double flow_width = Raster::nodata;  ///< median over the footprint's length, compare/flow_width.h [m]
     int threads = 1;
     std::optional<Comparison> comparison;  ///< with the survey, when the case gives one
