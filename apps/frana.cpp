@@ -180,7 +180,7 @@ void add_particles(CLI::App& app, ParticlesOptions& options, Action& action) {
 }
 
 void add_convert(CLI::App& app, ConvertOptions& options, Action& action) {
-    CLI::App* command = app.add_subcommand("convert", "columns of a run to 3D points, with what is kept on the way");
+    CLI::App* command = app.add_subcommand("convert", "particles of a run to 3D points, with what is kept on the way");
     command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();
     numeric(command->add_option("--time", options.time, "simulated time [s]; the nearest frame is taken"), kFinite);
     numeric(command->add_option("--spacing", options.spacing, "vertical distance of the points [m]"), kFinite);
@@ -191,7 +191,7 @@ void add_convert(CLI::App& app, ConvertOptions& options, Action& action) {
         ->check(CLI::IsMember({"along-bed", "zero"}));
     command->add_option("--profile", options.profile, "of the velocity: plug (default), linear, parabolic, bagnold")
         ->check(CLI::IsMember({"plug", "linear", "parabolic", "bagnold"}));
-    numeric(command->add_option("--window", options.window, "only columns within: xmin,ymin,xmax,ymax"), kFinite)
+    numeric(command->add_option("--window", options.window, "only particles within: xmin,ymin,xmax,ymax"), kFinite)
         ->delimiter(',')
         ->expected(4);
     command->add_option("--points", options.points, "3D points (.h5) to bring back onto the run's grid, with --back");
@@ -306,7 +306,7 @@ void add_stress(CLI::App& app, StressOptions& options, Action& action) {
     command->add_option(
         "--model", options.models,
         "what carries the scenes: all (the default), or with commas between them depth_averaged, solid_flow "
-        "(3D points), structured, water, mixture (structured columns and water), staged, flood (water alone)");
+        "(3D points), structured, water, mixture (structured particles and water), staged, flood (water alone)");
     numeric(command->add_option("--seed", options.seed, "of the series; default 1"), kFromZero);
     numeric(command->add_option("--scenes", options.scenes, "at most so many; default as many as the time allows"),
             kAboveZero);

@@ -152,8 +152,8 @@ TEST_CASE("A column hundreds of cells high on a bent bed falls no faster than gr
     CHECK(verdict.worst.count("speed") == 1);
 }
 
-// Two columns whose support just reaches a row of nodes: those have 1e-31 kg, which stress drove to 1e12 m/s. The bend
-// of the bed there took that for the columns' speed.
+// Two particles whose support just reaches a row of nodes: those have 1e-31 kg, which stress drove to 1e12 m/s. The
+// bend of the bed there took that for the particles' speed.
 TEST_CASE("A node's last bit of mass, which stress throws, does not feel a bend by its speed", "[stress]") {
     Draft draft;
     draft.model = Model::mixture;

@@ -145,7 +145,7 @@ TEST_CASE("A sound run of every model breaks nothing, and is checked for all tha
         CAPTURE(word_of(model), verdict.text, verdict.broken ? verdict.broken->text : "");
         REQUIRE_FALSE(verdict.refused);
         REQUIRE_FALSE(verdict.broken);
-        CHECK(verdict.steps >= 14);  // one of water may take several of the columns
+        CHECK(verdict.steps >= 14);  // one of water may take several of the particles
         for (const char* checked : {"finite", "positive", "mass", "momentum", "energy", "speed", "threads", "resume"}) {
             CAPTURE(checked);
             CHECK(verdict.worst.count(checked) == 1);
@@ -202,7 +202,7 @@ TEST_CASE("Scenes of other models that once broke an invariant break none", "[st
         {Model::water, 2, 470, "water.viscosity", "0.19193959929416746"},
         {Model::water, 2, 1271, "water.mud_alpha", "0.04977025032683622"},
         {Model::mixture, 2, 362, "water.profile_factor", "3.0"},
-        // Affine transfers where streams of columns meet.
+        // Affine transfers where streams of particles meet.
         {Model::structured, 2, 97, "material.structure.young_modulus", "165676880.48915252"},
         // Points that began inside a barrier were pushed onto it.
         {Model::solid_flow, 2, 156, "stage#0.transfer", "\"flip\""},

@@ -19,11 +19,11 @@ Model model_of(const std::vector<Model>& models, std::uint64_t seed, std::uint64
 
 /// All of a case that another model carries, but for its end and its claims on bits.
 void draw_solid_flow(Dice& dice, Draft& draft);  ///< 3D points from the start, on all of the terrain
-void draw_structured(Dice& dice, Draft& draft);  ///< columns that hold together, and grains
+void draw_structured(Dice& dice, Draft& draft);  ///< particles that hold together, and grains
 void draw_water(Dice& dice, Draft& draft);       ///< a lake, rain, a wave of water, with little that is solid
-void draw_mixture(Dice& dice, Draft& draft);     ///< columns and grains with water in their pores and within them
+void draw_mixture(Dice& dice, Draft& draft);     ///< particles and grains with water in their pores and within them
 void draw_flood(Dice& dice, Draft& draft);       ///< water alone: releases, a lake, rain, inflows, sides of all kinds
-void draw_staged(Dice& dice, Draft& draft);      ///< columns, 3D points in a window, and perhaps columns again
+void draw_staged(Dice& dice, Draft& draft);      ///< particles, 3D points in a window, and perhaps particles again
 
 /// Shape of the ground, of the release, what it is made of, how it is solved: the parts of draw().
 void draw_terrain(Dice& dice, Draft& draft);

@@ -1,4 +1,4 @@
-// Columns and grains with water in their pores, within them and around them.
+// Particles and grains with water in their pores, within them and around them.
 #include "checks/fuzz/draw.h"
 #include "checks/fuzz/draw_structure.h"
 

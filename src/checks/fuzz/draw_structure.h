@@ -1,5 +1,5 @@
 #pragma once
-// What structured columns and the water with them are, in a random case.
+// What structured particles and the water with them are, in a random case.
 #include "checks/fuzz/draw.h"
 
 namespace frana::stress {

@@ -1,4 +1,4 @@
-// Columns that hold together, and grains: what a random case of them is made of.
+// Particles that hold together, and grains: what a random case of them is made of.
 #include <algorithm>
 
 #include "checks/fuzz/draw.h"
