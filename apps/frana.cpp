@@ -300,7 +300,7 @@ void add_bench(CLI::App& app, BenchOptions& options, Action& action) {
     command->callback([&] { action = [&] { return bench_command(options); }; });
 }
 
-void add_stress(CLI::App& app, StressOptions& options, Action& action) {
+void add_fuzz(CLI::App& app, FuzzOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("stress", "random hostile scenes; invariants checked each step");
     numeric(command->add_option("--seconds", options.seconds, "wall time for running scenes; default 60"), kAboveZero);
     command->add_option(
@@ -327,7 +327,7 @@ void add_stress(CLI::App& app, StressOptions& options, Action& action) {
     command->add_flag("--same-threads", options.same_threads, "one thread and two must give that case the same bits");
     command->add_flag("--same-resumed", options.same_resumed,
                       "kept half way and taken up again it must end with the same bits");
-    command->callback([&] { action = [&] { return stress_command(options); }; });
+    command->callback([&] { action = [&] { return fuzz_command(options); }; });
 }
 
 /// CLI11 alone would only say that a command is missing.
@@ -374,7 +374,7 @@ int run_program(int argc, char** argv) {
     StatesOptions states;
     VerifyOptions verify;
     BenchOptions bench;
-    StressOptions stress;
+    FuzzOptions fuzz;
     Action action;
     add_run(app, run, action);
     add_converge(app, converge, action);
@@ -389,7 +389,7 @@ int run_program(int argc, char** argv) {
     add_states(app, states, action);
     add_verify(app, verify, action);
     add_bench(app, bench, action);
-    add_stress(app, stress, action);
+    add_fuzz(app, fuzz, action);
     refuse_options_as_values(app);
     if (argc > 1) refuse_unknown(app, argv[1]);
     try {

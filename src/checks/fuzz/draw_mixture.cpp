@@ -2,7 +2,7 @@
 #include "checks/fuzz/draw.h"
 #include "checks/fuzz/draw_structure.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 void draw_mixture(Dice& dice, Draft& draft) {
     draw_ground(dice, draft);
@@ -15,4 +15,4 @@ void draw_mixture(Dice& dice, Draft& draft) {
     if (dice.chance(0.2)) draw_level(dice, draft);
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

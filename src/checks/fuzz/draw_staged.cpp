@@ -6,7 +6,7 @@
 #include "checks/fuzz/draw.h"
 #include "checks/fuzz/draw_3d.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 /// Some nodes of the terrain, three and more each way.
@@ -45,4 +45,4 @@ void draw_staged(Dice& dice, Draft& draft) {
     say(draft, particles_first ? "stage#2.model" : "stage#1.model", "depth_averaged");
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

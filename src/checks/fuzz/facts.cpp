@@ -10,7 +10,7 @@
 #include "shallow/depth_averaged.h"
 #include "terrain/places.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -282,4 +282,4 @@ Facts facts_of(const Scene& scene, const Simulation& simulation, const Claims& c
     return facts;
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -5,7 +5,7 @@
 #include "checks/fuzz/draft.h"
 #include "run/simulation.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 /// What of a scene decides on which invariants hold, and how well.
 struct Facts {
@@ -54,4 +54,4 @@ struct Facts {
 /// Of a simulation that make_simulation() made of `scene` and that has not moved.
 Facts facts_of(const Scene& scene, const Simulation& simulation, const Claims& claims);
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

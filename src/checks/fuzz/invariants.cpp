@@ -9,7 +9,7 @@
 #include "base/compensated_sum.h"
 #include "observe/budget.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -290,4 +290,4 @@ void Watch::part() {
     worst_["symmetry"] = 1.0;
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

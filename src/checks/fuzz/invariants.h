@@ -7,7 +7,7 @@
 #include "checks/fuzz/facts.h"
 #include "checks/fuzz/snapshot.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 /// A broken invariant.
 struct Violation {
@@ -161,4 +161,4 @@ private:
     std::map<std::string, double> worst_;
 };
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -7,7 +7,7 @@
 #include "coupling/walled_particles.h"
 #include "shallow/depth_averaged.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 bool is_finite(const Field& field, Index n) {
@@ -141,4 +141,4 @@ Snapshot snapshot_of(Simulation& simulation, bool steep) {
     return shot;
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

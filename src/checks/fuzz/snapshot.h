@@ -9,7 +9,7 @@ namespace frana {
 class DepthAveraged;
 }
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 /// A node of the domain near material.
 struct NodeState {
@@ -52,4 +52,4 @@ const DepthAveraged* particles_of(const Simulation& simulation);
 /// The present state. Looking does not change the run (tests/conserve_runs.cpp).
 Snapshot snapshot_of(Simulation& simulation, bool steep);
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz
