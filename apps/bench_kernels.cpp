@@ -21,8 +21,8 @@ struct Bed {
           grid_update(make_grid_update(scene)) {
         DepthAveraged simulation(scene);
         for (int n = 0; n < 6; ++n) simulation.advance(1e9);
-        flow.columns = simulation.flow().columns;
-        TileSorter().sort(flow.columns, flow.grid, {}, flow.active);  // as they lie
+        flow.particles = simulation.flow().particles;
+        TileSorter().sort(flow.particles, flow.grid, {}, flow.active);  // as they lie
         step = simulation.status().dt;
         transfer->deposit(flow, step);
         surface();
@@ -64,7 +64,7 @@ void sweep(benchmark::State& state, Body&& body) {
         (void)unused;
         body(bed);
     }
-    state.SetItemsProcessed(state.iterations() * bed.flow.columns.count());
+    state.SetItemsProcessed(state.iterations() * bed.flow.particles.count());
 }
 
 void deposit(benchmark::State& state) {
@@ -84,7 +84,7 @@ void shock(benchmark::State& state) {
     sweep(state, [](Bed& b) { shock_pass(b.flow); });
 }
 void sort_by_tile(benchmark::State& state) {
-    sweep(state, [](Bed& b) { b.sorter.sort(b.flow.columns, b.flow.grid, {}, b.flow.active); });
+    sweep(state, [](Bed& b) { b.sorter.sort(b.flow.particles, b.flow.grid, {}, b.flow.active); });
 }
 
 BENCHMARK(deposit)->Arg(70000)->Arg(500000)->Unit(benchmark::kMillisecond);

@@ -180,7 +180,7 @@ void add_particles(CLI::App& app, ParticlesOptions& options, Action& action) {
 }
 
 void add_convert(CLI::App& app, ConvertOptions& options, Action& action) {
-    CLI::App* command = app.add_subcommand("convert", "columns of a run to 3D points, with what is kept on the way");
+    CLI::App* command = app.add_subcommand("convert", "particles of a run to 3D points, with what is kept on the way");
     command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();
     numeric(command->add_option("--time", options.time, "simulated time [s]; the nearest frame is taken"), kFinite);
     numeric(command->add_option("--spacing", options.spacing, "vertical distance of the points [m]"), kFinite);
@@ -191,7 +191,7 @@ void add_convert(CLI::App& app, ConvertOptions& options, Action& action) {
         ->check(CLI::IsMember({"along-bed", "zero"}));
     command->add_option("--profile", options.profile, "of the velocity: plug (default), linear, parabolic, bagnold")
         ->check(CLI::IsMember({"plug", "linear", "parabolic", "bagnold"}));
-    numeric(command->add_option("--window", options.window, "only columns within: xmin,ymin,xmax,ymax"), kFinite)
+    numeric(command->add_option("--window", options.window, "only particles within: xmin,ymin,xmax,ymax"), kFinite)
         ->delimiter(',')
         ->expected(4);
     command->add_option("--points", options.points, "3D points (.h5) to bring back onto the run's grid, with --back");
@@ -300,13 +300,13 @@ void add_bench(CLI::App& app, BenchOptions& options, Action& action) {
     command->callback([&] { action = [&] { return bench_command(options); }; });
 }
 
-void add_stress(CLI::App& app, StressOptions& options, Action& action) {
+void add_fuzz(CLI::App& app, FuzzOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("stress", "random hostile scenes; invariants checked each step");
     numeric(command->add_option("--seconds", options.seconds, "wall time for running scenes; default 60"), kAboveZero);
     command->add_option(
         "--model", options.models,
         "what carries the scenes: all (the default), or with commas between them depth_averaged, solid_flow "
-        "(3D points), structured, water, mixture (structured columns and water), staged, flood (water alone)");
+        "(3D points), structured, water, mixture (structured particles and water), staged, flood (water alone)");
     numeric(command->add_option("--seed", options.seed, "of the series; default 1"), kFromZero);
     numeric(command->add_option("--scenes", options.scenes, "at most so many; default as many as the time allows"),
             kAboveZero);
@@ -327,7 +327,7 @@ void add_stress(CLI::App& app, StressOptions& options, Action& action) {
     command->add_flag("--same-threads", options.same_threads, "one thread and two must give that case the same bits");
     command->add_flag("--same-resumed", options.same_resumed,
                       "kept half way and taken up again it must end with the same bits");
-    command->callback([&] { action = [&] { return stress_command(options); }; });
+    command->callback([&] { action = [&] { return fuzz_command(options); }; });
 }
 
 /// CLI11 alone would only say that a command is missing.
@@ -374,7 +374,7 @@ int run_program(int argc, char** argv) {
     StatesOptions states;
     VerifyOptions verify;
     BenchOptions bench;
-    StressOptions stress;
+    FuzzOptions fuzz;
     Action action;
     add_run(app, run, action);
     add_converge(app, converge, action);
@@ -389,7 +389,7 @@ int run_program(int argc, char** argv) {
     add_states(app, states, action);
     add_verify(app, verify, action);
     add_bench(app, bench, action);
-    add_stress(app, stress, action);
+    add_fuzz(app, fuzz, action);
     refuse_options_as_values(app);
     if (argc > 1) refuse_unknown(app, argv[1]);
     try {

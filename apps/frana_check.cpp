@@ -103,7 +103,7 @@ std::string total_text(const BuiltScene& built) {
                                    particles_of(built.scene), particle_volume, volume, particle_volume * density);
     if (!built.scene.inflows.empty())
         text += fmt::format("            and {:.0f} that come in by the end, at most\n",
-                            Feed(built.scene.inflows).outlook(built.scene.end).columns);
+                            Feed(built.scene.inflows).outlook(built.scene.end).particles);
     return text;
 }
 
@@ -166,7 +166,7 @@ Start start_of(const Scene& scene) {
     const Feed::Outlook inflow = Feed(scene.inflows).outlook(scene.end);
     for (const Vec2& place : inflow.from) start.add(scene.bed, place.x(), place.y(), inflow.depth);
     start.speed = std::max(start.speed, inflow.speed);
-    start.particle_seconds += inflow.column_seconds;
+    start.particle_seconds += inflow.particle_seconds;
     return start;
 }
 
@@ -174,7 +174,7 @@ Forecast forecast(const Scene& scene) {
     const Start start = start_of(scene);
     Forecast result;
     double wave = std::sqrt(scene.gravity * start.depth);
-    if (scene.structure) wave += ColumnLaw(scene.structure->material).sound_speed(scene.density);
+    if (scene.structure) wave += StructuredLaw(scene.structure->material).sound_speed(scene.density);
     result.fall_speed = std::sqrt(start.speed * start.speed + 2.0 * scene.gravity * (start.top - start.lowest));
     const double cfl = scene.structure ? scene.structure->cfl : water_alone(scene) ? kWaterCfl : scene.scheme.cfl;
     const double reach = cfl * scene.bed.geometry.cell;

@@ -146,7 +146,7 @@ struct BenchOptions {
 /// `frana stress [--seconds S] [--seed N] [--scenes N] [--first N] [--shrunk N] [--json FILE] [--out DIR]
 /// [--model WORDS] [--cfl-map [--figure FILE.png]]
 /// [--case CASE --steps N [--rests] [--mirror x|y|diagonal] [--same-threads] [--same-resumed]]`
-struct StressOptions {
+struct FuzzOptions {
     double seconds = 60.0;       ///< of running scenes; shrinking comes on top
     std::string models = "all";  ///< to draw of: all, or words with commas
     long long seed = 1;
@@ -164,7 +164,7 @@ struct StressOptions {
     std::string mirror = "none";
 };
 
-int stress_command(const StressOptions& options);        // frana_stress.cpp
+int fuzz_command(const FuzzOptions& options);            // frana_fuzz.cpp
 int bench_command(const BenchOptions& options);          // frana_bench.cpp
 int verify_command(const VerifyOptions& options);        // frana_verify.cpp
 int run_command(const RunOptions& options);              // frana_run.cpp

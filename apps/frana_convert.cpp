@@ -1,4 +1,4 @@
-// `frana convert`: the columns of a run become 3D points for other programs (Fois, de Falco, Formaggia 2025,
+// `frana convert`: the particles of a run become 3D points for other programs (Fois, de Falco, Formaggia 2025,
 // Algorithm 2). A table tells what was conserved on the way.
 #include <fmt/format.h>
 
@@ -44,8 +44,8 @@ std::string listed(const double* numbers, std::size_t count) {
 }
 
 /// What lies in the window; everything when there is none.
-FlowColumns chosen_columns(const RunState& state, const std::vector<double>& window) {
-    if (window.empty()) return state.columns;
+FlowParticles chosen_particles(const RunState& state, const std::vector<double>& window) {
+    if (window.empty()) return state.particles;
     const std::string text = "--window " + listed(window.data(), window.size());
     if (!(window[0] < window[2] && window[1] < window[3]))
         throw UserError(text +
@@ -56,10 +56,10 @@ FlowColumns chosen_columns(const RunState& state, const std::vector<double>& win
         throw UserError(
             fmt::format("{}: lies outside the terrain; expected a part of {}; give map coordinates of the run", text,
                         listed(terrain.data(), terrain.size())));
-    FlowColumns inside = columns_within(state.columns, {window[0], window[1], window[2], window[3]});
+    FlowParticles inside = particles_within(state.particles, {window[0], window[1], window[2], window[3]});
     if (inside.count() == 0)
         throw UserError(
-            fmt::format("{}: holds no material at {:.6g} s; expected columns of the flow in it; give another "
+            fmt::format("{}: holds no material at {:.6g} s; expected particles of the flow in it; give another "
                         "window or time",
                         text, state.time));
     return inside;
@@ -81,8 +81,8 @@ double bytes_needed(double points, const std::string& format) {
 }
 
 /// Refuses what does not fit, before any of it is allocated.
-void require_memory(const FlowColumns& columns, double spacing, const std::string& format) {
-    const double points = forecast_points(columns, spacing);
+void require_memory(const FlowParticles& particles, double spacing, const std::string& format) {
+    const double points = forecast_points(particles, spacing);
     const double bytes = bytes_needed(points, format), free = free_memory();
     if (bytes <= free) return;
     throw UserError(
@@ -116,15 +116,15 @@ PointTable table_of(const SolidPoints& points, const RunState& state, double den
                      {"pressure", "Pa", {"pressure"}, points.pressure.data()},
                      {"stress", "Pa", {"sxx", "syy", "szz", "sxy", "syz", "sxz"}, points.stress.data()},
                      {"height", "m", {"height"}, points.height.data()},
-                     {"column", "1", {"column"}, points.column.data()}};
+                     {"column", "1", {"column"}, points.particle.data()}};
     return table;
 }
 
 /// A fluid that is stiff enough for its own flow. Sound is ten times as fast as its waves and its material. So the
 /// density changes by about 1 % (Monaghan 1994).
-double sound_speed(const SolidPoints& points, const FlowColumns& columns, double gravity) {
+double sound_speed(const SolidPoints& points, const FlowParticles& particles, double gravity) {
     double fastest = 0.0;
-    for (const double depth : columns.depth) fastest = std::max(fastest, std::sqrt(gravity * depth));
+    for (const double depth : particles.depth) fastest = std::max(fastest, std::sqrt(gravity * depth));
     for (std::size_t k = 0; k < points.count(); ++k) {
         const double* v = &points.velocity[3 * k];
         fastest = std::max(fastest, std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
@@ -133,7 +133,7 @@ double sound_speed(const SolidPoints& points, const FlowColumns& columns, double
 }
 
 /// The case's viscosity goes along; laws that Kratos' fluid has not are named.
-void write_for_kratos(const ConvertOptions& options, const RunState& state, const FlowColumns& columns,
+void write_for_kratos(const ConvertOptions& options, const RunState& state, const FlowParticles& particles,
                       const SolidPoints& points, double density) {
     const CaseFile run_case = case_of_run(options.run_dir);
     const std::string law = run_case.word("material.rheology.law");
@@ -144,7 +144,7 @@ void write_for_kratos(const ConvertOptions& options, const RunState& state, cons
                         "the file a number instead of it in {}",
                         run_case.place(key), run_case.file().string()));
     const double viscosity = law == "none" ? 0.0 : run_case.number(key);
-    const double sound = sound_speed(points, columns, run_case.number("terrain.gravity"));
+    const double sound = sound_speed(points, particles, run_case.number("terrain.gravity"));
     make_folder_of(options.out);
     write_kratos(
         options.out, points, kratos_fluid(density, viscosity, sound),
@@ -217,22 +217,22 @@ int convert_command(const ConvertOptions& options) {
         std::cout << fmt::format("no frame at {:.6g} s; the nearest, at {:.6g} s, is taken\n", *options.time,
                                  state.time);
     tell_of_water(options, state);
-    const FlowColumns columns = chosen_columns(state, options.window);
-    require_memory(columns, choice.spacing, format);
+    const FlowParticles particles = chosen_particles(state, options.window);
+    require_memory(particles, choice.spacing, format);
 
-    const SolidPoints points = columns_to_points(columns, choice);
-    const Conservation kept = conservation_of(columns, points, choice);
+    const SolidPoints points = particles_to_points(particles, choice);
+    const Conservation kept = conservation_of(particles, points, choice);
     const std::string conservation = conservation_json(kept);
-    const double density = total(columns.mass) / total(columns.volume);
+    const double density = total(particles.mass) / total(particles.volume);
     if (format == ".mdpa")
-        write_for_kratos(options, state, columns, points, density);
+        write_for_kratos(options, state, particles, points, density);
     else
         write_points(options.out, format, table_of(points, state, density, options, conservation),
                      points.position.data());
     const fs::path record = options.out.string() + ".conservation.json";
     write_text(record, record_json(state, options, conservation));
     std::cout << conservation_text(kept)
-              << fmt::format("{} points of {} columns at {:.6g} s in {}\n{}\n", points.count(), columns.count(),
+              << fmt::format("{} points of {} particles at {:.6g} s in {}\n{}\n", points.count(), particles.count(),
                              state.time, options.out.string(), record.string());
     return 0;
 }

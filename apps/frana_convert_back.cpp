@@ -17,7 +17,7 @@
 namespace frana {
 namespace {
 
-/// A total of the points and of the columns they became.
+/// A total of the points and of the particles they became.
 struct Totals {
     CompensatedSum mass, volume, momentum[2], moved;
 };
@@ -34,25 +34,25 @@ Totals totals_of(const SolidPoints& points) {
     return totals;
 }
 
-Totals totals_of(const FlowColumns& columns) {
+Totals totals_of(const FlowParticles& particles) {
     Totals totals;
-    for (std::size_t p = 0; p < columns.count(); ++p) {
-        totals.mass.add(columns.mass[p]);
-        totals.volume.add(columns.volume[p]);
-        totals.momentum[0].add(columns.mass[p] * columns.vx[p]);
-        totals.momentum[1].add(columns.mass[p] * columns.vy[p]);
+    for (std::size_t p = 0; p < particles.count(); ++p) {
+        totals.mass.add(particles.mass[p]);
+        totals.volume.add(particles.volume[p]);
+        totals.momentum[0].add(particles.mass[p] * particles.vx[p]);
+        totals.momentum[1].add(particles.mass[p] * particles.vy[p]);
     }
     return totals;
 }
 
-std::string line(const char* name, const CompensatedSum& points, const CompensatedSum& columns, double scale) {
-    const double error = std::abs(points.value() - columns.value());
-    return fmt::format("{:<22} {:>16.9g} {:>16.9g} {:>15.2e}\n", name, points.value(), columns.value(),
+std::string line(const char* name, const CompensatedSum& points, const CompensatedSum& particles, double scale) {
+    const double error = std::abs(points.value() - particles.value());
+    return fmt::format("{:<22} {:>16.9g} {:>16.9g} {:>15.2e}\n", name, points.value(), particles.value(),
                        error > 0.0 ? error / scale : 0.0);
 }
 
 std::string balance(const SolidPoints& points, const GatheredFlow& flow) {
-    const Totals before = totals_of(points), after = totals_of(flow.columns);
+    const Totals before = totals_of(points), after = totals_of(flow.particles);
     const double moved = before.moved.value();
     CompensatedSum kinetic;
     for (const double energy : flow.kinetic) kinetic.add(energy);
@@ -61,8 +61,8 @@ std::string balance(const SolidPoints& points, const GatheredFlow& flow) {
                        line("volume [m3]", before.volume, after.volume, before.volume.value()) +
                        line("momentum_x [kg m/s]", before.momentum[0], after.momentum[0], moved) +
                        line("momentum_y [kg m/s]", before.momentum[1], after.momentum[1], moved);
-    text += fmt::format("{} points on {} pixels; {:.6g} J of motion within the columns are given up\n",
-                        points.count() - flow.outside, flow.columns.count(), kinetic.value());
+    text += fmt::format("{} points on {} pixels; {:.6g} J of motion within the particles are given up\n",
+                        points.count() - flow.outside, flow.particles.count(), kinetic.value());
     if (flow.outside > 0)
         text += fmt::format("{} points, {:.6g} kg, stand beyond the terrain and are left out\n", flow.outside,
                             flow.mass_outside);
@@ -74,7 +74,7 @@ std::string balance(const SolidPoints& points, const GatheredFlow& flow) {
 int convert_back(const ConvertOptions& options) {
     const Raster bed = bed_of_run(options.run_dir);
     const SolidPoints points = read_points_hdf5(options.points);
-    const GatheredFlow flow = points_to_columns(points, bed);
+    const GatheredFlow flow = points_to_particles(points, bed);
     const FlowRasters rasters = rasters_of(flow, bed);
     std::filesystem::create_directories(options.back);
     const std::tuple<const char*, const Raster&, const char*, const char*> files[] = {

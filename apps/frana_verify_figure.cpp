@@ -144,7 +144,7 @@ Raster bed_of(const verify::ShownBlock& shown) {
     return bed;
 }
 
-/// Where a block lies at its end, by the damage of its columns.
+/// Where a block lies at its end, by the damage of its particles.
 MapFigure block_figure(const verify::ShownBlock& shown) {
     constexpr double kShownShare = 0.05;  // of the depth at the start
     StructuredFlow flow(shown.scene);
@@ -159,7 +159,7 @@ MapFigure block_figure(const verify::ShownBlock& shown) {
     figure.title = shown.title;
     figure.field_label = "damage [1]";
     figure.range = {0.0, 1.0};
-    figure.footer = fmt::format("frana {}: structured columns, cells of {:g} m, {} columns, mean damage {:.3f}",
+    figure.footer = fmt::format("frana {}: structured particles, cells of {:g} m, {} particles, mean damage {:.3f}",
                                 FRANA_VERSION, shown.scene.grid.cell, flow.status().points, flow.status().damage);
     return figure;
 }

@@ -22,7 +22,7 @@ def build(run_dir):
 
 
 def show_points(run_dir, view, look):
-    """Discs as large as the points in the middle; columns, which have model 0, are left out."""
+    """Discs as large as the points in the middle; particles, which have model 0, are left out."""
     particles = PVDReader(registrationName="particles", FileName=os.path.join(run_dir, "particles.pvd"))
     points = Threshold(registrationName="3D points", Input=particles)
     points.Scalars = ["POINTS", "model"]

@@ -1,5 +1,5 @@
 """Solids and free water, through time: the depth of each from above, and the surfaces of both aslant, the water's blue and
-clear over the columns'."""
+clear over the particles'."""
 from paraview.simple import Calculator, Clip, Contour, Show, WarpByScalar
 
 import frana_scene as scene
@@ -33,22 +33,22 @@ def build(run_dir):
     upper = layout.SplitVertical(0, 0.5)
     left = layout.SplitHorizontal(upper, 0.5)
     views = [scene.render_view(layout, place, name, look["camera"]["map"], flat=True)
-             for place, name in ((left, "columns"), (left + 1, "water"))]
+             for place, name in ((left, "particles"), (left + 1, "water"))]
     aslant = scene.render_view(layout, upper + 1, "both", look["camera"]["view"], flat=False, scale="scale_wide")
     terrain = scene.terrain_surface(run_dir)
     grid = scene.open_grid(run_dir)
     bound = calculated(grid, "bound_depth", "depth-water_depth")
     both = calculated(bound, "bound_surface", "surface-water_depth")
-    columns, columns_edge = phase(both, "columns", "bound_surface", "bound_depth", look)
+    particles, particles_edge = phase(both, "particles", "bound_surface", "bound_depth", look)
     water, water_edge = phase(both, "free water", "surface", "water_depth", look)
     for view in views + [aslant]:
         scene.show_terrain(terrain, view)
     for view, (surface, edge), array, title, preset, invert in (
-            (views[0], (columns, columns_edge), "bound_depth", "columns [m]", "Viridis (matplotlib)", False),
+            (views[0], (particles, particles_edge), "bound_depth", "particles [m]", "Viridis (matplotlib)", False),
             (views[1], (water, water_edge), "water_depth", "free water [m]", "Linear Blue (8_31f)", False)):
         scene.show_line(edge, view, look["lift"])
         scene.show_flow(surface, view, look, array, title, look["range"][array], preset, invert)
-    scene.show_flow(columns, aslant, look, "bound_depth", "columns [m]", look["range"]["bound_depth"],
+    scene.show_flow(particles, aslant, look, "bound_depth", "particles [m]", look["range"]["bound_depth"],
                     "Viridis (matplotlib)")
     clear = Show(water, aslant)
     clear.Position = [0.0, 0.0, look["lift"]]
@@ -56,7 +56,7 @@ def build(run_dir):
     clear.AmbientColor = clear.DiffuseColor = scene.BLUE
     clear.Opacity = 0.55
     clear.Ambient, clear.Diffuse, clear.Specular = 0.5, 0.5, 0.3
-    for view, text in zip(views + [aslant], ("Columns", "Free water", "Both: water blue over the columns")):
+    for view, text in zip(views + [aslant], ("Particles", "Free water", "Both: water blue over the particles")):
         scene.heading(view, text)
     scene.clock(views[0], grid)
     scene.link_cameras(views)

@@ -1,5 +1,5 @@
-"""Solids that hold together, from above, through time: damage of the columns, depth, what is left of their cohesion, and
-the larger principal stress of the structure (tension positive)."""
+"""Solids that hold together, from above, through time: damage of the particles, depth, what is left of their cohesion,
+and the larger principal stress of the structure (tension positive)."""
 from paraview.simple import Calculator
 
 import frana_scene as scene

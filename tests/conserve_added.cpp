@@ -1,8 +1,8 @@
 // Material that is added to a run from outside: the bits of a release that enters then, budgets, states put aside, refusals.
 #include "analytic_scene.h"
 #include "catch.h"
-#include "coupling/growing_columns.h"
-#include "coupling/walled_columns.h"
+#include "coupling/growing_particles.h"
+#include "coupling/walled_particles.h"
 #include "growing_slope.h"
 #include "observe/budget.h"
 #include "run/memory_state.h"
@@ -24,7 +24,7 @@ double cap(double x, double y, double x0, double depth) {
     return depth * std::max(0.0, 1.0 - r2);
 }
 
-/// Columns of a cap that would be released there.
+/// Particles of a cap that would be released there.
 Seeds cap_at(double x0) {
     Scene scene = slope();
     fill(scene, [&](double x, double y) { return cap(x, y, x0, 1.0); });
@@ -62,7 +62,7 @@ TEST_CASE("What is added between two steps is a release that enters then, bit fo
     for (int step = 0; step < 40; ++step) {
         late.advance(1e3), added.advance(1e3);
         REQUIRE(added.status().dt == late.status().dt);
-        const Columns &a = added.flow().columns, &b = late.flow().columns;
+        const Particles &a = added.flow().particles, &b = late.flow().particles;
         REQUIRE((a.x == b.x));
         REQUIRE((a.mass == b.mass));
         REQUIRE((a.vx == b.vx));
@@ -113,7 +113,7 @@ TEST_CASE("What is added while the state is put aside enters after the step that
     CHECK(run.status().time == reference.status().time);
     reference.add(more);
     CHECK(run.status().mass_in == reference.status().mass_in);
-    CHECK((run.flow().columns.x == reference.flow().columns.x));
+    CHECK((run.flow().particles.x == reference.flow().particles.x));
     CHECK(run.status().mass_in == Approx(volume_of(more) * run.flow().density).epsilon(1e-14));
 }
 
@@ -144,14 +144,14 @@ TEST_CASE("Material is added next to barriers, and where the terrain grows for i
     wall.line = {{100, 10}, {100, 35}};
     wall.height = 2.0;
     walled.barriers = {wall};
-    WalledColumns near_wall(walled);
+    WalledParticles near_wall(walled);
     go_to(near_wall, 1.0);
     near_wall.add(cap_at(80.0));
     CHECK(near_wall.status().mass_in > 0.0);
 
     Scene scene = growing_slope(NodeBox{180, 20, 200, 160});
     fill(scene, [](double x, double y) { return std::hypot(x - 1240, y - 400) < 40 ? 2.0 : 0.0; });
-    GrowingColumns part(scene);
+    GrowingParticles part(scene);
     const Status first = part.status();
     part.advance(1e3);
     const Index held = part.held().i0;

@@ -77,7 +77,7 @@ TEST_CASE("What comes in over an area is its table's at each step, up to a layer
     }
     CHECK(run.status().mass_in / scene.density == Approx(kPool).epsilon(1e-14));
     CHECK_FALSE(run.more_comes());
-    CHECK(run.flow().columns.count() < 41 * 120);  // 120 patches: layers at the same places were merged
+    CHECK(run.flow().particles.count() < 41 * 120);  // 120 patches: layers at the same places were merged
 }
 
 TEST_CASE("What comes in goes on coming in when all that was there has become bed",
@@ -100,7 +100,7 @@ TEST_CASE("What comes in goes on coming in when all that was there has become be
         run.advance(12.0);
         REQUIRE(run.status().time > before);
         CHECK(std::abs(budget(first, run.status()).mass_error) < 1e-13);
-        empty += run.flow().columns.count() == 0 && run.more_comes();
+        empty += run.flow().particles.count() == 0 && run.more_comes();
     }
     CHECK(empty > 0);
     CHECK(run.status().mass_in / scene.density == Approx(kPool).epsilon(1e-14));
@@ -139,8 +139,8 @@ TEST_CASE("A spring fills a closed box to its volume over its area", "[inflow][a
     const Frame frame = run.frame();
     const double* depth = frame.node("depth")->data;
     CHECK(run.status().mass / scene.density == Approx(kPool).epsilon(1e-13));
-    // The level is that of a twelfth of the box. Single nodes are off by 2 % (root mean square): columns that flowed stand
-    // unevenly, and pressure does not see what differs from node to node. Without scheme.wave_shift it is 6 %.
+    // The level is that of a twelfth of the box. Single nodes are off by 2 % (root mean square): particles that flowed
+    // stand unevenly, and pressure does not see what differs from node to node. Without scheme.wave_shift it is 6 %.
     double squares = 0.0;
     for (Index n = 0; n < frame.grid.size(); ++n) squares += std::pow(depth[n] / (kPool / 480.0) - 1.0, 2);
     CHECK(std::sqrt(squares / static_cast<double>(frame.grid.size())) < 0.03);

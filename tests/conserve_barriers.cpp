@@ -13,7 +13,7 @@
 #include "coupling/flow_map.h"
 #include "coupling/open_share.h"
 #include "coupling/staged_run.h"
-#include "coupling/walled_columns.h"
+#include "coupling/walled_particles.h"
 #include "fresh_folder.h"
 #include "observe/barriers.h"
 #include "observe/memory_archive.h"
@@ -99,7 +99,7 @@ TEST_CASE("Material that is let go where a barrier stands is on it, and gains no
     Scene scene = channel(2.0);
     scene.particles = {};
     fill(scene, [](double x, double) { return x > 9 && x < 11 ? 1.0 : 0.0; });
-    for (const double from : {0.0, 0.01}) {  // as points, and as columns first, to which it is ground
+    for (const double from : {0.0, 0.01}) {  // as points, and as particles first, to which it is ground
         scene.solid->from = from;
         StagedRun run(scene);
         run_to(run, 0.02);
@@ -167,7 +167,7 @@ TEST_CASE("What goes over a low barrier is counted", "[barrier]") {
     CHECK(beyond <= over * (1.0 + 1e-12));
 }
 
-TEST_CASE("Columns see a barrier as ground as high as its top", "[barrier]") {
+TEST_CASE("Particles see a barrier as ground as high as its top", "[barrier]") {
     Scene scene = channel(1.5);
     const Raster bed = with_barriers(scene);
     CHECK(bed.at(20, 4) == 3.5);  // x = 10
@@ -187,7 +187,7 @@ TEST_CASE("Columns see a barrier as ground as high as its top", "[barrier]") {
         CHECK(run->at({13.5, 2.0}).depth == 0.0);
         REQUIRE(run->loads() != nullptr);
         CHECK(run->loads()->barriers.at(0).faces.empty());
-        // The foremost row of columns, a sixteenth of them all, is where the surface is known least.
+        // The foremost row of particles, a sixteenth of them all, is where the surface is known least.
         CHECK(run->loads()->barriers.at(0).overtopped * scene.density < run->status().mass / 16.0);
         CHECK(run->loads()->barriers.at(0).run_up > 2.5);
     }
@@ -223,17 +223,17 @@ TEST_CASE("Many walls raise the ground as each of them does alone", "[barrier]")
     CHECK(higher > 150);
 }
 
-TEST_CASE("Columns that go over a low barrier are counted once, and the count is taken up again", "[barrier]") {
+TEST_CASE("Particles that go over a low barrier are counted once, and the count is taken up again", "[barrier]") {
     Scene scene = channel(0.5);
     scene.solid.reset();
-    WalledColumns run(scene);
+    WalledParticles run(scene);
     const double mass = run.status().mass;
     while (run.status().time < 1.0) run.advance(2.0);
     MemoryArchive kept;
     run.serialize(kept);
-    WalledColumns resumed(scene, Start::resumed);
+    WalledParticles resumed(scene, Start::resumed);
     resumed.serialize(kept.rewind());
-    for (WalledColumns* one : {&run, &resumed}) run_to(*one, 2.0);
+    for (WalledParticles* one : {&run, &resumed}) run_to(*one, 2.0);
     const double over = run.loads()->barriers.at(0).overtopped * scene.density;
     CHECK(resumed.loads()->barriers.at(0).overtopped * scene.density == over);
     CHECK(resumed.loads()->barriers.at(0).run_up == run.loads()->barriers.at(0).run_up);
@@ -248,11 +248,11 @@ TEST_CASE("Columns that go over a low barrier are counted once, and the count is
     CHECK(over <= mass * (1.0 + 1e-12));
 }
 
-TEST_CASE("Columns that go over a wall of a tenth of a cell are counted too", "[barrier]") {
+TEST_CASE("Particles that go over a wall of a tenth of a cell are counted too", "[barrier]") {
     Scene scene = channel(0.3);
     scene.solid.reset();
     scene.barriers[0].outline = rectangle_of(10.0, -1.0, 10.05, 5.0);
-    WalledColumns run(scene);
+    WalledParticles run(scene);
     run_to(run, 2.0);
     const Frame frame = run.frame();
     const Field &place = *frame.particle("position"), &carried = *frame.particle("mass");
@@ -286,16 +286,16 @@ Scene turned_wall(double angle, double height) {
 }
 
 // Nodes within half a cell of a thin wall meet at corners only, where it is askew. Between them it sagged to half.
-TEST_CASE("A thin wall is closed to columns at any angle, and as high as at any other", "[barrier]") {
+TEST_CASE("A thin wall is closed to particles at any angle, and as high as at any other", "[barrier]") {
     double least = INFINITY, most = 0.0;
     for (const double angle : {0.0, 10.0, 20.0, 30.0, 45.0, 63.0}) {
         CAPTURE(angle);
         Scene scene = turned_wall(angle, 20.0);  // run-up is 8 m at most
-        WalledColumns high(scene);
+        WalledParticles high(scene);
         run_to(high, scene.end);
         CHECK(high.loads()->barriers.at(0).overtopped == 0.0);
         scene = turned_wall(angle, 4.0);
-        WalledColumns low(scene);
+        WalledParticles low(scene);
         run_to(low, scene.end);
         const double over = low.loads()->barriers.at(0).overtopped;
         least = std::min(least, over), most = std::max(most, over);
@@ -309,7 +309,7 @@ TEST_CASE("A stream meets a step in the bed higher than its energy and stays bel
     // Front of a dam break in a stream: 5 m/s and twice the speed of its waves, so up to 6.5 m; all else 2.3 m.
     Scene scene = channel(8.0);
     scene.solid.reset();
-    WalledColumns run(scene);
+    WalledParticles run(scene);
     const double mass = run.status().mass;
     run_to(run, 3.0);
     CHECK(run.loads()->barriers.at(0).overtopped * scene.density < 0.01 * mass);  // the foremost cells see it late
@@ -335,7 +335,7 @@ std::shared_ptr<const DistanceField> box_shape() {
     return field;
 }
 
-TEST_CASE("A barrier of any shape is ground to columns and a wall to points", "[barrier]") {
+TEST_CASE("A barrier of any shape is ground to particles and a wall to points", "[barrier]") {
     Scene scene = channel(4.0);
     StagedRun prism(scene);
     scene.barriers[0] = {};
@@ -424,7 +424,7 @@ TEST_CASE("Run-up is what stands at a barrier, not between the legs of a bent on
     CHECK(run.loads()->barriers.at(0).run_up > foot);
 }
 
-TEST_CASE("Columns see a wall along a line, its thickness given or not, with a 3D stage or without", "[barrier]") {
+TEST_CASE("Particles see a wall along a line, its thickness given or not, with a 3D stage or without", "[barrier]") {
     Scene scene = channel(1.5);
     scene.barriers[0].outline = {};
     scene.barriers[0].line = {{10.0, 4.5}, {10.0, -0.5}};
@@ -464,7 +464,7 @@ TEST_CASE("A run against a barrier has the same bits when it is taken up again",
     for (std::size_t f = 0; f < one.faces.size(); ++f) CHECK(one.faces[f].impulse == other.faces[f].impulse);
 }
 
-// The stage ends before anything is at the wall. From then on columns go over it, each of which counts once.
+// The stage ends before anything is at the wall. From then on particles go over it, each of which counts once.
 TEST_CASE("Barriers are observed on after the 3D stage, and resumed", "[barrier]") {
     Scene scene = channel(0.2);
     scene.solid->until = 0.2;
@@ -485,7 +485,7 @@ TEST_CASE("Barriers are observed on after the 3D stage, and resumed", "[barrier]
     CHECK(a.run_up == b.run_up);
     CHECK(a.run_up > 2.2);  // the top of the wall
     double over = 0.0;
-    const Columns& c = straight.columns().flow().columns;
+    const Particles& c = straight.particles().flow().particles;
     for (Index p = 0; p < c.count(); ++p)
         if (0.5 * c.x[p] > 10.0) over += c.mass[p] / scene.density;
     REQUIRE(over > 0.5);
@@ -493,7 +493,7 @@ TEST_CASE("Barriers are observed on after the 3D stage, and resumed", "[barrier]
     CHECK(a.overtopped == Approx(over).epsilon(0.05));
 }
 
-TEST_CASE("What columns do to a barrier outside of the stage's window is known, but not how hard", "[barrier]") {
+TEST_CASE("What particles do to a barrier outside of the stage's window is known, but not how hard", "[barrier]") {
     Scene scene = channel(0.2);
     scene.solid->window = {0, 0, 16, 8};  // to x = 8
     scene.solid->closed = {true, true, false, true};
@@ -573,7 +573,7 @@ TEST_CASE("Depth before a wall is that of what stands there, whatever the wall t
     }
 }
 
-// Columns have a ramp of two cells before a barrier. Points come as far as its face, over the ground.
+// Particles have a ramp of two cells before a barrier. Points come as far as its face, over the ground.
 TEST_CASE("In a 3D stage places and nodes show the ground that points stand on, before, after and beside the window",
           "[barrier]") {
     Scene scene = channel(4.0);
@@ -593,19 +593,19 @@ TEST_CASE("In a 3D stage places and nodes show the ground that points stand on, 
         CHECK(frame.node("surface")->data[k] == Approx(ground + depth).epsilon(1e-12));
         CHECK(run.at({x, 2.0}).elevation == Approx(ground).epsilon(1e-12));
     };
-    const auto of_columns = [&](double x) { return run.columns().at({x, 2.0}).elevation; };
+    const auto of_particles = [&](double x) { return run.particles().at({x, 2.0}).elevation; };
     run_to(run, 0.2);
-    for (const double x : {9.5, 10.0, 10.5}) check_at(x, of_columns(x));
+    for (const double x : {9.5, 10.0, 10.5}) check_at(x, of_particles(x));
     run_to(run, 0.7);
-    CHECK(of_columns(9.5) > 2.5);  // the ramp
+    CHECK(of_particles(9.5) > 2.5);  // the ramp
     for (const double x : {8.0, 9.0, 9.5, 10.0}) check_at(x, 2.0);
     check_at(11.0, 6.0);  // the barrier fills what this node stands for
     CHECK(run.at({9.8, 2.0}).elevation == Approx(2.0).epsilon(1e-12));
-    for (const double x : {11.5, 12.0, 12.5}) check_at(x, of_columns(x));  // beyond the window
-    CHECK(of_columns(12.5) > 2.5);
+    for (const double x : {11.5, 12.0, 12.5}) check_at(x, of_particles(x));  // beyond the window
+    CHECK(of_particles(12.5) > 2.5);
     run_to(run, 0.9);
     REQUIRE(run.points()->status().points == 0);
-    for (const double x : {9.5, 10.0, 10.5}) check_at(x, of_columns(x));
+    for (const double x : {9.5, 10.0, 10.5}) check_at(x, of_particles(x));
 }
 
 // A lake at rest over a low box whose faces stand on nodes, between them, and on a slope: a node on a face is as deep
@@ -651,7 +651,7 @@ TEST_CASE("Depth on the crest of a barrier is that of what stands there, next to
 }
 
 // The terrain's rows lie one behind the other: what is beyond the east end of one is not at the west of the next.
-TEST_CASE("Points beyond the terrain's edge become columns there, whatever barrier stands at the other edge",
+TEST_CASE("Points beyond the terrain's edge become particles there, whatever barrier stands at the other edge",
           "[barrier][stages]") {
     Scene scene = channel(4.0);
     scene.sides = Sides::open;
@@ -675,7 +675,7 @@ TEST_CASE("Points beyond the terrain's edge become columns there, whatever barri
     REQUIRE(before > 0.01 * run.status().mass);
     run_to(run, 0.25);
     REQUIRE(run.points()->status().points == 0);
-    CHECK(beyond() == Approx(before).epsilon(0.2));  // a column stands for a quarter of a cell
+    CHECK(beyond() == Approx(before).epsilon(0.2));  // a particle stands for a quarter of a cell
 }
 
 // Points go on for a cell and a half beyond the outer nodes. Their pixels end at half a cell.
@@ -958,10 +958,10 @@ TEST_CASE("A barrier's mean force goes on from what was measured before the run 
           read_table(scratch.path() / "whole" / "barriers" / "dam.csv").column("mean_force"));
 }
 
-TEST_CASE("Points that leave their window before a wall become columns on their own side of it", "[barrier]") {
-    // The window ends so near to the wall that columns can stay neither in it nor beside the wall: the nearest free node of
-    // theirs lies behind the wall. They stand in the window until their next step, not on the wall of 1.5 m: that would give
-    // them 500 J at once.
+TEST_CASE("Points that leave their window before a wall become particles on their own side of it", "[barrier]") {
+    // The window ends so near to the wall that particles can stay neither in it nor beside the wall: the nearest free
+    // node of theirs lies behind the wall. They stand in the window until their next step, not on the wall of 1.5 m:
+    // that would give them 500 J at once.
     Scene scene = channel(1.5);
     scene.particles = {};
     fill(scene, [](double x, double) { return x > 7 && x < 8 ? 0.3 : 0.0; });
@@ -978,14 +978,14 @@ TEST_CASE("Points that leave their window before a wall become columns on their 
         const double before = run.status().dissipated;
         run.advance(0.6);
         gain = std::max(gain, before - run.status().dissipated);
-        const Columns& c = run.columns().flow().columns;
-        double columns = 0.0;
+        const Particles& c = run.particles().flow().particles;
+        double particles = 0.0;
         for (Index p = 0; p < c.count(); ++p) {
-            columns += c.mass[p];
+            particles += c.mass[p];
             if (0.5 * c.x[p] > 10.6) behind = std::max(behind, c.mass[p]);
         }
-        came += std::max(columns - last, 0.0);
-        last = columns;
+        came += std::max(particles - last, 0.0);
+        last = particles;
     }
     CHECK(came > 0.1 * mass);
     CHECK(behind == 0.0);
@@ -994,9 +994,9 @@ TEST_CASE("Points that leave their window before a wall become columns on their 
 }
 
 TEST_CASE(
-    "Points that no cell of columns lies before are remarked upon when they stand where barriers raise the ground",
+    "Points that no cell of particles lies before are remarked upon when they stand where barriers raise the ground",
     "[barrier]") {
-    // A lane of 0.5 m between two walls, all along: columns on cells of 0.5 m see no lane.
+    // A lane of 0.5 m between two walls, all along: particles on cells of 0.5 m see no lane.
     Scene scene = channel(1.0);
     scene.particles = {};
     fill(scene, [](double x, double y) { return x > 4 && x < 8 && y > 1.75 && y < 2.25 ? 0.5 : 0.0; });
@@ -1008,9 +1008,9 @@ TEST_CASE(
     const double mass = run.status().mass;
     run_to(run, 0.1);
     REQUIRE(run.points()->status().points == 0);
-    CHECK(run.columns().status().mass == Approx(mass).epsilon(1e-13));
+    CHECK(run.particles().status().mass == Approx(mass).epsilon(1e-13));
     const std::string expected =
-        fmt::format("{:.6g} m3 became columns on ground that barriers or walls in holes raise", mass / scene.density);
+        fmt::format("{:.6g} m3 became particles on ground that barriers or walls in holes raise", mass / scene.density);
     const std::vector<std::string> remarks = run.remarks();
     CHECK(std::any_of(remarks.begin(), remarks.end(),
                       [&](const std::string& remark) { return remark.rfind(expected, 0) == 0; }));

@@ -53,7 +53,7 @@ struct Still {
         place(scene.particles);
     }
     void place(const Seeds& seeds) {
-        Columns& c = flow.columns;
+        Particles& c = flow.particles;
         c.resize(seeds.count());
         for (Index p = 0; p < seeds.count(); ++p) {
             c.x[p] = seeds.x[p], c.y[p] = seeds.y[p], c.id[p] = p, c.mass[p] = seeds.volume[p] * flow.density;
@@ -78,7 +78,7 @@ struct Still {
         now.mass = 1.0, now.mean_speed = mean_speed;
         now.step = ++steps, now.dt = 0.5, now.time = 0.5 * static_cast<double>(steps);
         if (!erosion.settle(flow, now)) return false;
-        sorter.drop(flow.columns, erosion.gone(), flow.active);
+        sorter.drop(flow.particles, erosion.gone(), flow.active);
         return true;
     }
 
@@ -115,13 +115,13 @@ TEST_CASE("The surface does not move when material becomes bed, and what moves s
     const Scene scene = puddle();
     Still still(scene);
     const Index moving = still.flow.active.tile[4];
-    for (Index p = still.flow.active.begin[4]; p < still.flow.active.begin[5]; ++p) still.flow.columns.cxy[p] = 1e-9;
-    const Index count = still.flow.columns.count(), stay = still.flow.active.begin[5] - still.flow.active.begin[4];
+    for (Index p = still.flow.active.begin[4]; p < still.flow.active.begin[5]; ++p) still.flow.particles.cxy[p] = 1e-9;
+    const Index count = still.flow.particles.count(), stay = still.flow.active.begin[5] - still.flow.active.begin[4];
     REQUIRE((stay > 100 && count > 3 * stay));
     const std::vector<double> before = still.levels();
     REQUIRE_FALSE(still.settle());  // half a second of one
     REQUIRE(still.settle());
-    CHECK(still.flow.columns.count() == stay);
+    CHECK(still.flow.particles.count() == stay);
     for (Index n = 0; n < still.flow.active.count(); ++n)
         if (still.flow.active.begin[n + 1] > still.flow.active.begin[n]) CHECK(still.flow.active.tile[n] == moving);
     CHECK(farthest(still.levels(), before) <= 4e-15);  // round-off of 2 m
@@ -137,7 +137,7 @@ TEST_CASE("Points stay that deposit on a node in motion, and they alone, until i
     const auto touches = [&](double x, double y) {  // at places half a cell wide, sub-points reach an eighth farther
         return std::abs(x - double(i)) < 1.625 && std::abs(y - double(j)) < 1.625;
     };
-    const Columns& c = still.flow.columns;
+    const Particles& c = still.flow.particles;
     const Index near = std::count_if(c.id.begin(), c.id.end(), [&](Index p) { return touches(c.x[p], c.y[p]); });
     REQUIRE((near > 20 && 10 * near < c.count()));
     const std::vector<double> before = still.levels();
@@ -183,7 +183,7 @@ TEST_CASE("A heap becomes bed while a film slides within the same 16 cells", "[d
         if (simulation.status().time > 0.4) slowest = std::min(slowest, simulation.status().max_speed);
     }
     REQUIRE(slowest > 0.5);  // the film never rested
-    for (const double x : flow.columns.x) REQUIRE((x > 9.0 && x < 15.0));
+    for (const double x : flow.particles.x) REQUIRE((x > 9.0 && x < 15.0));
     CHECK(simulation.status().bed.deposited == Approx(of_heap).epsilon(1e-12));
     CHECK(farthest(surface(), before) <= 1e-15);
 }
@@ -200,11 +200,11 @@ TEST_CASE("What has become bed is taken up again to the last crumb: the bed is t
     };
     const std::vector<double> rock = heights();
     still.levels(), still.settle(), still.settle();
-    REQUIRE(still.flow.columns.count() == 0);
+    REQUIRE(still.flow.particles.count() == 0);
     CHECK(farthest(heights(), rock) > 1.5);
     // The same points come again, in motion.
     still.place(scene.particles);
-    for (double& vx : still.flow.columns.vx) vx = 1.0;
+    for (double& vx : still.flow.particles.vx) vx = 1.0;
     still.transfer->deposit(still.flow, 0.1);
     double taken = 0.0;
     for (int n = 0; n < 60; ++n) {
@@ -280,13 +280,13 @@ TEST_CASE("A slab that stops on rough ground becomes bed with all that still cre
 TEST_CASE("What creeps more slowly than a run's rest becomes bed, and what begins to move does not", "[deposition]") {
     const Scene scene = puddle();
     Still still(scene);
-    still.flow.columns.vx.assign(still.flow.columns.vx.size(), 1e-3);
+    still.flow.particles.vx.assign(still.flow.particles.vx.size(), 1e-3);
     const double peak = GENERATE(0.019, 0.021);  // a twentieth of it is above 1e-3 m/s, or below
     still.mean_speed = peak;
     still.levels();
     for (Index k = 0; k < still.flow.grid.size(); ++k) still.flow.nodes.motions()[k].vx = 1e-3;
     for (int n = 0; n < 3; ++n) still.settle();
-    CHECK((still.flow.columns.count() == 0) == (peak > 0.02));
+    CHECK((still.flow.particles.count() == 0) == (peak > 0.02));
 }
 
 TEST_CASE("A lens at rest becomes bed with the energy that it had", "[deposition]") {
@@ -499,7 +499,7 @@ TEST_CASE("What enters next to a wall rests as long as what enters elsewhere bef
     while (run.status().time < 20.0 && gone == 0.0) {
         run.advance(20.0);
         if (entered == 0.0 && run.status().mass_in > 0.0) entered = run.status().time;
-        if (entered > 0.0 && run.flow().columns.count() == 0) gone = run.status().time;
+        if (entered > 0.0 && run.flow().particles.count() == 0) gone = run.status().time;
     }
     REQUIRE(entered >= 3.0);
     REQUIRE(gone > 0.0);

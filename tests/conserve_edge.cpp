@@ -1,4 +1,4 @@
-// The edge between columns and 3D points: what is on one side feels what is on the other.
+// The edge between particles and 3D points: what is on one side feels what is on the other.
 #include <map>
 
 #include "analytic_scene.h"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kCell = 0.5;  // of the space [m]; of the terrain 1 m
 
-/// Columns over a bed in a tank 4 m wide; from `from` on those east of 19.5 m are points.
+/// Particles over a bed in a tank 4 m wide; from `from` on those east of 19.5 m are points.
 Scene tank(Index length, const Function& bed, const Function& depth, double from) {
     Scene scene = scene_on(length + 1, 5, 1.0, bed);
     scene.particles = {};
@@ -40,7 +40,7 @@ Scene sheet(double slope, double depth, double speed) {
     return scene;
 }
 
-/// Sums of what columns and points have in rows of nodes, as columns deposit it.
+/// Sums of what particles and points have in rows of nodes, as particles deposit it.
 struct Row {
     double mass = 0.0, points = 0.0, pressure = 0.0;  ///< [kg]; of points alone; times their pressure [kg Pa]
 };
@@ -54,7 +54,7 @@ std::vector<Row> rows_of(const StagedRun& run, Index length) {
             row.mass += s.w[n] * mass, row.points += s.w[n] * points, row.pressure += s.w[n] * pressure;
         }
     };
-    const Columns& c = run.columns().flow().columns;
+    const Particles& c = run.particles().flow().particles;
     for (Index p = 0; p < c.count(); ++p) add(c.x[p], c.mass[p], 0.0, 0.0);
     const MaterialPoints& q = run.points()->body().points;
     for (Index p = 0; p < q.count(); ++p)
@@ -106,7 +106,7 @@ TEST_CASE("A lake at rest that reaches across the window's edge creeps by less t
     CHECK(run.points()->momentum_residual().norm() < 1e-12 * force);
 }
 
-TEST_CASE("A window in the middle of a lake rests between the columns around it, corners too", "[stages]") {
+TEST_CASE("A window in the middle of a lake rests between the particles around it, corners too", "[stages]") {
     Scene scene = scene_on(19, 19, 1.0, [](double, double) { return 0.0; });
     scene.particles = {};
     fill(scene, [](double, double) { return 1.0; });
@@ -134,9 +134,8 @@ TEST_CASE("A window in the middle of a lake rests between the columns around it,
 
 TEST_CASE("A uniform flow crosses the window's edge within 2 % of its depth", "[stages]") {
     // Level, where nothing changes, and down 1 in 5 without friction, where it stays as deep and speeds up. What is left
-    // is the lattice of the points, seen through the columns' shape functions. (Rows before the 16th feel the sheet's end,
-    // whose waves have come 12 m by then.) Without what both sides show each
-    // other: 28 and 20 %.
+    // is the lattice of the points, seen through the particles' shape functions. (Rows before the 16th feel the sheet's
+    // end, whose waves have come 12 m by then.) Without what both sides show each other: 28 and 20 %.
     const double slope = GENERATE(0.0, 0.2);
     CAPTURE(slope);
     const Scene scene = sheet(slope, 1.0, 4.0);
@@ -154,7 +153,7 @@ TEST_CASE("A uniform flow crosses the window's edge within 2 % of its depth", "[
     CHECK(run.status().mass_left == 0.0);
 }
 
-TEST_CASE("Columns that flow in have their pressure at the bed within 5 % right behind the edge", "[stages]") {
+TEST_CASE("Particles that flow in have their pressure at the bed within 5 % right behind the edge", "[stages]") {
     // Of points that came in during the run, up to four cells behind the edge, mean of four times. Level to 1 %; down 1 in
     // 5 pressures of single cells swing by a tenth, for speeds that differ by a thousandth of sound. Without what both
     // sides show each other: 0.78 and 0.62 of it.
@@ -183,7 +182,7 @@ TEST_CASE("Momentum closes to round-off at an edge with a barrier across it, wit
     scene.barriers.push_back(post);
     scene.solid->bed_friction = 0.2;
     const auto law = GENERATE(0, 1, 2, 3);
-    scene.sides = law == 0 ? Sides::open : Sides::wall;  // between walls the columns' impulse is what they gained
+    scene.sides = law == 0 ? Sides::open : Sides::wall;  // between walls the particles' impulse is what they gained
     CAPTURE(law);
     scene.solid->transfer = law == 0 ? Transfer::tpic : law == 1 ? Transfer::apic : Transfer::flip;
     scene.solid->blending = 0.2;
@@ -201,8 +200,8 @@ TEST_CASE("Momentum closes to round-off at an edge with a barrier across it, wit
 
 namespace {
 
-/// A slab on a plane that falls by 1 in 5 to the east, without friction: points from the start in a window of 20 m, columns
-/// below it.
+/// A slab on a plane that falls by 1 in 5 to the east, without friction: points from the start in a window of 20 m,
+/// particles below it.
 Scene slab(Index cells_of_flow, std::optional<double> until) {
     const double slope = 0.2;
     Scene scene = scene_on(80, 5, 1.0, [=](double x, double) { return slope * (80.0 - x); });
@@ -221,10 +220,10 @@ Scene slab(Index cells_of_flow, std::optional<double> until) {
     return scene;
 }
 
-/// Centre of mass along x of columns and points [m].
+/// Centre of mass along x of particles and points [m].
 double centre_of(const StagedRun& run) {
     double moment = 0.0, mass = 0.0;
-    const Columns& c = run.columns().flow().columns;
+    const Particles& c = run.particles().flow().particles;
     for (Index p = 0; p < c.count(); ++p) moment += c.mass[p] * c.x[p], mass += c.mass[p];
     const MaterialPoints& q = run.points()->body().points;
     for (Index p = 0; p < q.count(); ++p) moment += q.mass[p] * run.points()->position(p).x(), mass += q.mass[p];
@@ -233,9 +232,10 @@ double centre_of(const StagedRun& run) {
 
 }  // namespace
 
-TEST_CASE("Points that leave the window go on as columns, with their mass and momentum", "[stages]") {
+TEST_CASE("Points that leave the window go on as particles, with their mass and momentum", "[stages]") {
     // Forces inside the slab are its own: its centre of mass falls by g sin cos, whatever it is made of. Of the 1 % 0.2 are
-    // lost before the first point leaves. With new columns that do not carry on the points' gradient the slab gains 5 %.
+    // lost before the first point leaves. With new particles that do not carry on the points' gradient the slab gains 5
+    // %.
     const Scene scene = slab(2, {});
     StagedRun run(scene);
     const double mass = run.status().mass, start = run.status().momentum[0];
@@ -244,7 +244,7 @@ TEST_CASE("Points that leave the window go on as columns, with their mass and mo
     CHECK(worst_momentum(run, 3.0, start, 5.0) < 1e-12);
     const Status& now = run.status();
     CHECK(run.points()->status().points <= seeds / 20);
-    CHECK(run.columns().status().mass >= 0.95 * mass);
+    CHECK(run.particles().status().mass >= 0.95 * mass);
     CHECK(now.mass_left == Approx(0.0).margin(1e-12 * mass));
     CHECK(now.mass == Approx(mass).epsilon(1e-13));
     const double g = 9.81 * 0.2 / (1.0 + 0.04);
@@ -254,7 +254,7 @@ TEST_CASE("Points that leave the window go on as columns, with their mass and mo
     CHECK(now.energy_left == Approx(0.0).margin(1e-12 * energy));
 }
 
-TEST_CASE("A 3D stage ends: all points become columns, which go on", "[stages]") {
+TEST_CASE("A 3D stage ends: all points become particles, which go on", "[stages]") {
     const Scene scene = slab(2, 0.7);
     StagedRun run(scene);
     const double mass = run.status().mass, start = run.status().momentum[0], x0 = centre_of(run);
@@ -262,7 +262,7 @@ TEST_CASE("A 3D stage ends: all points become columns, which go on", "[stages]")
     CHECK(worst_momentum(run, 0.7, start, 5.0) < 1e-12);
     CHECK(run.status().time == 0.7);
     CHECK(run.points()->status().points == 0);
-    CHECK(run.columns().status().mass == Approx(mass).epsilon(1e-13));
+    CHECK(run.particles().status().mass == Approx(mass).epsilon(1e-13));
     const double here = centre_of(run);
     Frame frame = run.frame();
     for (Index p = 0; p < frame.particle("model")->count; ++p) REQUIRE(frame.particle("model")->data[p] == 0.0);
@@ -273,19 +273,19 @@ TEST_CASE("A 3D stage ends: all points become columns, which go on", "[stages]")
     CHECK(centre_of(run) - x0 == Approx(5.0 * t + 0.5 * g * t * t).epsilon(0.01));
     CHECK(run.status().mass == Approx(mass).epsilon(1e-13));
     CHECK(run.status().mass_left == Approx(0.0).margin(1e-12 * mass));
-    // Every joule is somewhere, but for what columns lose by their scheme.
+    // Every joule is somewhere, but for what particles lose by their scheme.
     const Status& now = run.status();
     const double residual = energy - now.kinetic - now.potential - now.stored - now.dissipated - now.energy_left;
     CHECK(std::abs(residual) < 0.01 * now.kinetic);
 }
 
-TEST_CASE("Where a 3D stage ends while adjacent columns go on, no force acts on any of them", "[stages]") {
+TEST_CASE("Where a 3D stage ends while adjacent particles go on, no force acts on any of them", "[stages]") {
     // With velocities half a step apart the momentum of a frame would jump by a hundredth.
     const Scene scene = slab(2, 1.6);
     StagedRun run(scene);
     const double before = 1.599, g = 9.81 * 0.2 / (1.0 + 0.04);
     run_to(run, before);
-    REQUIRE(run.columns().status().mass > 0.2 * run.status().mass);
+    REQUIRE(run.particles().status().mass > 0.2 * run.status().mass);
     REQUIRE(run.points()->status().mass > 0.2 * run.status().mass);
     const double then = run.frame().status.momentum[0], mass = run.status().mass;
     run_to(run, 1.6);
@@ -295,7 +295,7 @@ TEST_CASE("Where a 3D stage ends while adjacent columns go on, no force acts on 
     CHECK(run.frame().status.momentum[0] == Approx(then + mass * g * (1.7 - before)).epsilon(2e-3));
 }
 
-TEST_CASE("Points that lie against a barrier when their stage ends become columns no higher, and gain no energy",
+TEST_CASE("Points that lie against a barrier when their stage ends become particles no higher, and gain no energy",
           "[stages]") {
     Scene scene = tank(
         40, [](double, double) { return 0.0; }, [](double x, double) { return x > 8.0 && x < 18.0 ? 1.0 : 0.0; }, 0.0);
@@ -313,9 +313,9 @@ TEST_CASE("Points that lie against a barrier when their stage ends become column
     run_to(run, 1.19);
     const Status before = run.status();
     Index touching = 0;
-    // The wall raises the columns' filtered ground by 80, 20 and 0.3 % of its 8 m at 20, 19 and 18 m.
+    // The wall raises the particles' filtered ground by 80, 20 and 0.3 % of its 8 m at 20, 19 and 18 m.
     const double levels[2] = {0.1 * 8.0, 0.5 * 8.0};
-    double points_above[2] = {}, columns_above[2] = {};
+    double points_above[2] = {}, particles_above[2] = {};
     for (Index p = 0; p < run.points()->status().points; ++p) {
         touching += run.points()->position(p).x() > 20.0;
         for (int n = 0; n < 2; ++n)
@@ -325,15 +325,15 @@ TEST_CASE("Points that lie against a barrier when their stage ends become column
     run_to(run, 1.2);
     const Status now = run.status();
     CHECK(now.kinetic + now.potential < before.kinetic + before.potential + before.stored);
-    const Columns& c = run.columns().flow().columns;
+    const Particles& c = run.particles().flow().particles;
     double there = 0.0;
     for (Index p = 0; p < c.count(); ++p) {
-        const double ground = run.columns().flow().bed.z[run.columns().flow().grid.nearest(c.x[p], c.y[p])];
+        const double ground = run.particles().flow().bed.z[run.particles().flow().grid.nearest(c.x[p], c.y[p])];
         for (int n = 0; n < 2; ++n)
-            if (ground > levels[n]) columns_above[n] += c.mass[p];
+            if (ground > levels[n]) particles_above[n] += c.mass[p];
         there += c.mass[p];
     }
-    for (int n = 0; n < 2; ++n) CHECK(columns_above[n] <= points_above[n]);  // what stands on the ramp was above it
+    for (int n = 0; n < 2; ++n) CHECK(particles_above[n] <= points_above[n]);  // what stands on the ramp was above it
     CHECK(there == Approx(mass).epsilon(1e-13));
     run_to(run, 2.0);
     CHECK(run.status().mass_left == Approx(0.0).margin(1e-12 * mass));
@@ -341,7 +341,7 @@ TEST_CASE("Points that lie against a barrier when their stage ends become column
 }
 
 // The ramp takes the room of a cell of the lake. Moved to the cells before it, that is a wave of 4 % of the depth. It
-// meets itself at the ends of the tank: half again, and what columns rock on the ramp.
+// meets itself at the ends of the tank: half again, and what particles rock on the ramp.
 TEST_CASE("A lake that stands at a barrier when its 3D stage ends is not heaped before it", "[stages][barrier]") {
     const double face = GENERATE(30.0, 30.3, 29.7);
     Scene scene = tank(
@@ -357,7 +357,7 @@ TEST_CASE("A lake that stands at a barrier when its 3D stage ends is not heaped 
     StagedRun run(scene);
     const double mass = run.status().mass;
     run_to(run, 0.3);
-    CHECK(run.columns().status().mass == Approx(mass).epsilon(1e-13));
+    CHECK(run.particles().status().mass == Approx(mass).epsilon(1e-13));
     double deepest = 0.0;
     while (run.status().time < 2.0) {
         const Frame frame = run.frame();

@@ -23,7 +23,7 @@ double gap(const Scene& scene, double until) {
 }
 
 /// A parabolic cap slides down a plane, in the gentle model: the steep one's lighter pressure does not do the work that the
-/// fall of the columns' centres yields, and leaves a few per cent open on any grid.
+/// fall of the particles' centres yields, and leaves a few per cent open on any grid.
 Scene sliding_cap(double cell) {
     const auto nodes = [&](double length) { return static_cast<Index>(length / cell) + 1; };
     Scene scene = scene_on(nodes(120), nodes(48), cell, [](double x, double) { return 80 - 0.6 * x; });

@@ -1,4 +1,5 @@
-// What flows as water alone by a bed law of columns: a second scheme for their equations. Exact answers, and what is refused.
+// What flows as water alone by a bed law of particles: a second scheme for their equations. Exact answers, and what is
+// refused.
 #include <cmath>
 
 #include "coupling/structured_run.h"

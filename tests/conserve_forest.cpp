@@ -98,7 +98,7 @@ TEST_CASE("The surface does not move when trees take mass, which goes with its v
     scene.forest = forest(scene, [](double x, double) { return x < 35.0 ? 100.0 : 0.0; });
     Flow flow(scene);
     Erosion erosion(scene, flow);
-    Columns& c = flow.columns;
+    Particles& c = flow.particles;
     const Seeds& seeds = scene.particles;
     c.resize(seeds.count());
     for (Index p = 0; p < seeds.count(); ++p) {

@@ -1,4 +1,4 @@
-// Friction that varies from place to place, under columns that hold together, grains beside water, and points in 3D.
+// Friction that varies from place to place, under particles that hold together, grains beside water, and points in 3D.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -67,7 +67,7 @@ void check_same_bits(const Scene& uniform, double end) {
 
 }  // namespace
 
-TEST_CASE("Nodes that all have the law of the scene change no bit of structured columns", "[zones][structured]") {
+TEST_CASE("Nodes that all have the law of the scene change no bit of structured particles", "[zones][structured]") {
     const BedLaw law = GENERATE(BedLaw(bed::Coulomb{0.25}), BedLaw(bed::Voellmy{0.2, 400}),
                                 BedLaw(bed::Manning{0.05, 0.1}), BedLaw(bed::Bingham{50, 300, 0.05}));
     for (const double share : {1.0, 0.0})
@@ -80,7 +80,7 @@ TEST_CASE("Nodes that all have the law of the scene change no bit of structured 
         }
 }
 
-TEST_CASE("Cells that all have the water's friction change no bit of columns with it; others do",
+TEST_CASE("Cells that all have the water's friction change no bit of particles with it; others do",
           "[zones][structured][water]") {
     const auto bits_of = [](double coefficient, std::optional<double> behind) {
         Scene scene = on_slope(bed::Coulomb{0.25}, 5, 17);
@@ -130,12 +130,12 @@ TEST_CASE("What slides from one friction onto another stops where friction has t
         CHECK(run->status().mean_speed < 0.01);
         return (mean_place(*run) - first) / cosine;
     };
-    const double block = way([](Scene&s) { hold_together(s, 1e9, 1.0); }), columns = way([](Scene&) {}),
+    const double block = way([](Scene&s) { hold_together(s, 1e9, 1.0); }), particles = way([](Scene&) {}),
                  points = way(go_into_space);
-    CAPTURE(before + behind, block, columns, points);
+    CAPTURE(before + behind, block, particles, points);
     // Nodes see the border to half a cell. One that lies so far off changes the way by this:
     const double half_a_cell = 0.5 / cosine * (1.0 + (kSlope - kBefore) / (kBehind - kSlope));
-    for (const double found : {block, columns, points}) CHECK(std::abs(found - before - behind) < 0.5 * half_a_cell);
+    for (const double found : {block, particles, points}) CHECK(std::abs(found - before - behind) < 0.5 * half_a_cell);
 }
 
 TEST_CASE("Sand is as strong inside as the roughest ground in its window, not elsewhere", "[zones][stages]") {
@@ -145,7 +145,7 @@ TEST_CASE("Sand is as strong inside as the roughest ground in its window, not el
         return bed::Coulomb{x < 50.0 ? kBefore : x < 80.0 ? kBehind : 0.9};
     });
     scene.solid->window = {0, 0, 60, 20};
-    CHECK(choose_start(scene, columns_of(scene.particles, scene, nodes_in_window(scene))).friction == kBehind);
+    CHECK(choose_start(scene, particles_of(scene.particles, scene, nodes_in_window(scene))).friction == kBehind);
     scene.solid->window = {0, 0, 40, 20};  // on the slope it needs as much as the slope
-    CHECK(choose_start(scene, columns_of(scene.particles, scene, nodes_in_window(scene))).friction == Approx(kSlope));
+    CHECK(choose_start(scene, particles_of(scene.particles, scene, nodes_in_window(scene))).friction == Approx(kSlope));
 }

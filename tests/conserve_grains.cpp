@@ -1,4 +1,4 @@
-// Grains of structured columns: alone, with K = 1, they are the depth-averaged flow; what rests stays; the same
+// Grains of structured particles: alone, with K = 1, they are the depth-averaged flow; what rests stays; the same
 // bits on any number of threads and after a stop.
 #include <omp.h>
 
@@ -23,7 +23,7 @@ Scene box_on(double slope, double mu) {
     scene.density = 1700.0;
     scene.curvature = Curvature::none;
     scene.bed_law = bed::Coulomb{mu};
-    scene.scheme.merge = false;     // which structured columns do not
+    scene.scheme.merge = false;     // which structured particles do not
     scene.scheme.wave_shift = 0.0;  // nor this
     return scene;
 }
@@ -58,21 +58,21 @@ Scene grains_at_barrier(double speed, bool hydrostatic) {
 struct Apart {
     double depth;               ///< sum |h - h'| / sum h [1]
     double momentum;            ///< sum |h v - h' v'| / sum |h v| [1]
-    Index points, points_more;  ///< of the flow; of the columns beyond those
+    Index points, points_more;  ///< of the flow; of the particles beyond those
 };
 
 /// The depth-averaged flow and grains after the same steps.
 Apart apart(Scene scene, double dt, int steps) {
     DepthAveraged flow(scene);
     scene.structure = grains(true);
-    StructuredFlow columns(structured_scene(scene));
+    StructuredFlow particles(structured_scene(scene));
     for (int n = 1; n <= steps; ++n) {
         flow.advance(n * dt);
-        columns.advance(n * dt);
-        REQUIRE(flow.status().time == columns.status().time);
+        particles.advance(n * dt);
+        REQUIRE(flow.status().time == particles.status().time);
     }
-    columns.sample();
-    const Flow &a = flow.flow(), &b = columns.body().flow;
+    particles.sample();
+    const Flow &a = flow.flow(), &b = particles.body().flow;
     double depth = 0.0, momentum = 0.0, depths = 0.0, momenta = 0.0;
     for (Index j = 0; j < a.grid.ny(); ++j)
         for (Index i = 0; i < a.grid.nx(); ++i) {
@@ -87,7 +87,7 @@ Apart apart(Scene scene, double dt, int steps) {
             momentum += (x - y).tail<2>().norm(), momenta += x.tail<2>().norm();
         }
     return {depth / depths, momentum / momenta, flow.status().particles,
-            columns.status().points - flow.status().particles};
+            particles.status().points - flow.status().particles};
 }
 
 void go_to(Simulation& run, double time) {
@@ -202,7 +202,7 @@ TEST_CASE("A resumed run of grains that split goes on with the same bits", "[str
     CHECK(state_bits(whole) == state_bits(resumed));
 }
 
-TEST_CASE("A resumed run of grains splits no lighter columns than it did before", "[structured][grains]") {
+TEST_CASE("A resumed run of grains splits no lighter particles than it did before", "[structured][grains]") {
     Scene scene = box_on(0.4, 0.2);
     scene.structure = grains(true);
     // Lighter than scheme.split_min_mass (0.02) of the others: these are never split.
@@ -220,7 +220,7 @@ TEST_CASE("A resumed run of grains splits no lighter columns than it did before"
     CHECK(state_bits(whole) == state_bits(resumed));
 }
 
-TEST_CASE("The mass at the start is as exact as the later ones, however many columns there are",
+TEST_CASE("The mass at the start is as exact as the later ones, however many particles there are",
           "[structured][grains]") {
     Scene scene = box_on(0.4, 0.2);
     scene.structure = grains(true);

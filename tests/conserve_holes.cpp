@@ -91,7 +91,7 @@ TEST_CASE("A stream goes round a hole that is a wall: nothing is lost, no energy
 
 TEST_CASE("A run round a hole has the same bits on any number of threads", "[holes][threads]") {
     const int before = omp_get_max_threads();
-    std::vector<Columns> ends;
+    std::vector<Particles> ends;
     for (const int threads : {1, 4}) {
         omp_set_num_threads(threads);
         Scene scene = walled(stream(Outline::slanted));
@@ -100,7 +100,7 @@ TEST_CASE("A run round a hole has the same bits on any number of threads", "[hol
         DepthAveraged simulation(scene);
         REQUIRE(simulation.flow().active.count() >= kTilesForThreads);
         run_to(simulation, 1.5);
-        ends.push_back(simulation.flow().columns);
+        ends.push_back(simulation.flow().particles);
     }
     omp_set_num_threads(before);
     CHECK(ends[0].x == ends[1].x);
@@ -117,8 +117,8 @@ TEST_CASE("A run round a hole, or into it, is taken up again with the same bits 
         straight.serialize(kept);
         resumed.serialize(kept.rewind());
         for (DepthAveraged* run : {&straight, &resumed}) run_to(*run, 2.5);
-        CHECK(resumed.flow().columns.x == straight.flow().columns.x);
-        CHECK(resumed.flow().columns.vx == straight.flow().columns.vx);
+        CHECK(resumed.flow().particles.x == straight.flow().particles.x);
+        CHECK(resumed.flow().particles.vx == straight.flow().particles.vx);
         CHECK(resumed.status().mass_left == straight.status().mass_left);
         CHECK(resumed.remarks() == straight.remarks());
         CHECK(straight.remarks().size() == (wall ? 0 : 1));

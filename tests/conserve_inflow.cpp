@@ -6,8 +6,8 @@
 #include "analytic_scene.h"
 #include "base/compensated_sum.h"
 #include "catch.h"
-#include "coupling/growing_columns.h"
-#include "coupling/walled_columns.h"
+#include "coupling/growing_particles.h"
+#include "coupling/walled_particles.h"
 #include "growing_slope.h"
 #include "observe/memory_archive.h"
 #include "run/run_loop.h"
@@ -216,16 +216,16 @@ TEST_CASE("What will come in is known before, with the time that it will be ther
     const double end = GENERATE(0.2, 4.0, 9.0);
     const Feed::Outlook outlook = Feed(inflows).outlook(end);
     Feed feed(inflows);
-    double columns = 0.0, seconds = 0.0, speed = 0.0;
+    double particles = 0.0, seconds = 0.0, speed = 0.0;
     for (double next = feed.next(); next <= end; next = feed.next()) {
         const Seeds& seeds = feed.take(next).seeds;
-        columns += static_cast<double>(seeds.count());
+        particles += static_cast<double>(seeds.count());
         seconds += static_cast<double>(seeds.count()) * (end - next);
         for (std::size_t n = 0; n < seeds.vx.size(); ++n) speed = std::max(speed, std::hypot(seeds.vx[n], seeds.vy[n]));
     }
-    CHECK(outlook.columns == columns);
-    CHECK((columns > 0.0) == (end > 0.5));                            // the table begins
-    CHECK(outlook.column_seconds == Approx(seconds).epsilon(1e-12));  // sums in another order
+    CHECK(outlook.particles == particles);
+    CHECK((particles > 0.0) == (end > 0.5));                            // the table begins
+    CHECK(outlook.particle_seconds == Approx(seconds).epsilon(1e-12));  // sums in another order
     CHECK(outlook.speed == Approx(speed).epsilon(1e-12));
 }
 
@@ -267,7 +267,7 @@ TEST_CASE("Whether material sleeps changes no bit of an inflow next to it", "[in
     for (const double t : {2.5, 6.0, 10.0, 32.0}) {
         run_to(sleeper, t), run_to(awake, t);
         slept = slept || some_asleep(sleeper.flow());
-        CHECK(sleeper.flow().columns.x == awake.flow().columns.x);
+        CHECK(sleeper.flow().particles.x == awake.flow().particles.x);
         CHECK(sleeper.status().kinetic == awake.status().kinetic);
     }
     CHECK(slept);
@@ -303,7 +303,7 @@ TEST_CASE("What a row passes on its way from the line counts", "[inflow][section
     run_to(run, 6.5);
     // What spreads upstream of the line and stays there has not passed.
     double behind = 0.0;
-    const Columns& c = run.flow().columns;
+    const Particles& c = run.flow().particles;
     for (Index p = 0; p < c.count(); ++p)
         if (c.y[p] > 13.0 && c.x[p] < (c.y[p] < 21.9 ? 11.9 + (c.y[p] - 13.8) * 8.2 / 8.1 : 20.1)) behind += c.mass[p];
     CHECK(run.passed()[0] == Approx(kFlood - behind / scene.density).epsilon(1e-9));
@@ -316,7 +316,7 @@ TEST_CASE("An inflow goes on where the terrain grows in the middle of its table,
     inflow.time = {0.0, 60.0}, inflow.discharge = {120.0, 0.0}, inflow.speed = {10.0, 5.0};
     scene.inflows = {inflow};
     scene.sections = {{"below", {{1200, 100}, {1200, 700}}, false}};
-    GrowingColumns part(scene);
+    GrowingParticles part(scene);
     const Status first = part.status();
     bool grew_meanwhile = false;
     while (part.status().time < 62.0) {
@@ -427,7 +427,7 @@ TEST_CASE("An inflow next to a barrier", "[inflow]") {
     wall.line = {{50, 10}, {50, 35}};
     wall.height = 2.0;
     scene.barriers = {wall};
-    WalledColumns run(scene);
+    WalledParticles run(scene);
     CHECK_FALSE(run.may_rest());
     run_to(run, 9.0);
     CHECK(run.may_rest());

@@ -3,8 +3,8 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
-#include "coupling/growing_columns.h"
-#include "coupling/walled_columns.h"
+#include "coupling/growing_particles.h"
+#include "coupling/walled_particles.h"
 #include "growing_slope.h"
 #include "observe/budget.h"
 #include "run/memory_state.h"
@@ -55,9 +55,9 @@ Scene chain() {
 
 const LateEntry& entry(const Extras& extras, std::size_t n) { return extras.late.at(n); }
 
-/// Places, motion and depth of all columns.
-void require_same_columns(const DepthAveraged& a, const DepthAveraged& b) {
-    const Columns &c = a.flow().columns, &d = b.flow().columns;
+/// Places, motion and depth of all particles.
+void require_same_particles(const DepthAveraged& a, const DepthAveraged& b) {
+    const Particles &c = a.flow().particles, &d = b.flow().particles;
     REQUIRE((c.x == d.x));
     REQUIRE((c.y == d.y));
     REQUIRE((c.mass == d.mass));
@@ -97,15 +97,15 @@ TEST_CASE("A release that enters later is a run that starts then, with the same 
             REQUIRE(late.status().time == kAt);
             REQUIRE_FALSE(late.more_comes());
             REQUIRE(entry(late.extras(), 0).entered == kAt);
-            if (!slab) require_same_columns(late, from_start);  // the slab's carry a depth that they felt meanwhile
+            if (!slab) require_same_particles(late, from_start);  // the slab's carry a depth that they felt meanwhile
             // The balance is closed at once: what came in is what the nodes have.
             CHECK(std::abs(budget(first, late.status()).energy_residual) <= 1e-12 * late.status().potential);
             double farthest = 0.0;
             for (int step = 0; step < 60; ++step) {
                 late.advance(1e3), from_start.advance(1e3);
                 REQUIRE(late.status().dt == from_start.status().dt);
-                REQUIRE((late.flow().columns.id == from_start.flow().columns.id));
-                require_same_columns(late, from_start);
+                REQUIRE((late.flow().particles.id == from_start.flow().particles.id));
+                require_same_particles(late, from_start);
                 REQUIRE(late.status().kinetic == from_start.status().kinetic);
                 REQUIRE(late.status().max_depth == from_start.status().max_depth);
                 farthest = std::max(farthest, from_start.status().max_speed_on_map);
@@ -210,7 +210,7 @@ TEST_CASE("A release that is hit enters when one of its nodes is first deeper th
     };
     while (depth_there() <= bare.output.footprint_depth) {
         REQUIRE_FALSE(entry(run.extras(), 0).entered.has_value());
-        require_same_columns(run, flow);
+        require_same_particles(run, flow);
         REQUIRE(flow.status().time < 20.0);
         flow.advance(20.0), run.advance(20.0);
     }
@@ -268,7 +268,7 @@ TEST_CASE("Late releases go along where the terrain grows, and next to barriers"
     const auto heap = [](double x, double y) { return std::hypot(x - 1240, y - 400) < 40 ? 2.0 : 0.0; };
     fill(scene, heap);
     delay(scene, "early", 3.0, heap), delay(scene, "late", 16.0, heap), delay(scene, "hit", {}, heap);
-    GrowingColumns part(scene);
+    GrowingParticles part(scene);
     CHECK(grows_before_all_is_in(part, 18.0));
     const Extras extras = part.extras();
     CHECK(entry(extras, 0).entered == 3.0);
@@ -281,7 +281,7 @@ TEST_CASE("Late releases go along where the terrain grows, and next to barriers"
     wall.line = {{100, 10}, {100, 35}};
     wall.height = 2.0;
     walled.barriers = {wall};
-    WalledColumns run(walled);
+    WalledParticles run(walled);
     run_to(run, 9.0);
     CHECK(run.extras().late[0].entered.has_value());
     CHECK(run.loads()->barriers[0].run_up > 0.0);

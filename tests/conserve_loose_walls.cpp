@@ -6,7 +6,7 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
-#include "coupling/walled_columns.h"
+#include "coupling/walled_particles.h"
 #include "growing_slide.h"
 #include "observe/budget.h"
 #include "observe/memory_archive.h"
@@ -80,9 +80,9 @@ std::vector<bool> footing(const Scene& scene, const Box& wall) {
 TEST_CASE("What carries a barrier stays, and the ground around it is taken up", "[barrier][erosion]") {
     const Scene scene = slide();
     const std::vector<bool> carries = footing(scene, kDam);
-    WalledColumns run(scene);
-    const WalledColumns still(scene);
-    const Flow& begin = still.columns().flow();
+    WalledParticles run(scene);
+    const WalledParticles still(scene);
+    const Flow& begin = still.particles().flow();
     const Status first = run.status();
     while (run.status().time < 15.0) {
         run.advance(15.0);
@@ -121,7 +121,7 @@ TEST_CASE("Ground below the top of a buried barrier stays, and what lies over it
         loosen(s, 0.2);
     });
     const std::vector<bool> carries = footing(scene, wall);
-    WalledColumns run(scene);
+    WalledParticles run(scene);
     const Status first = run.status();
     run_to(run, 15.0);
     CHECK(std::abs(budget(first, run.status()).mass_error) <= 1e-13);
@@ -153,7 +153,7 @@ TEST_CASE("Trees before a barrier hold back what flows, and none stand on it", "
         plant_trees(s);
         s.barriers[0].height = 0.5;
     });
-    WalledColumns run(scene);
+    WalledParticles run(scene);
     run_to(run, 15.0);
     REQUIRE(run.loads()->barriers.at(0).overtopped > 1.0);
     const Frame frame = run.frame();
@@ -182,7 +182,7 @@ TEST_CASE("Barriers in ground that sinks and rises have closed budgets, on any n
     const Threads restore;
     const Scene scene = slide([](Scene& s) { leave_deposits(s), plant_trees(s); });
     omp_set_num_threads(1);
-    WalledColumns straight(scene);
+    WalledParticles straight(scene);
     const Status first = straight.status();
     std::vector<MemoryArchive> kept;
     for (const double at : {2.0, 5.0, 9.0}) {
@@ -195,19 +195,19 @@ TEST_CASE("Barriers in ground that sinks and rises have closed budgets, on any n
     CHECK(now.bed.deposited > 0.05 * first.mass);
     CHECK(std::abs(budget(first, now).mass_error) <= 1e-13);
     CHECK(std::abs(budget(first, now).bed_error) <= 1e-13);
-    const auto check = [&](WalledColumns& other) {
-        check_same(other.columns(), straight.columns(), "bed/fresh");
+    const auto check = [&](WalledParticles& other) {
+        check_same(other.particles(), straight.particles(), "bed/fresh");
         CHECK(other.loads()->barriers.at(0).run_up == straight.loads()->barriers.at(0).run_up);
         CHECK(other.loads()->barriers.at(0).overtopped == straight.loads()->barriers.at(0).overtopped);
     };
     for (const int threads : {2, 4}) {
         omp_set_num_threads(threads);
-        WalledColumns again(scene);
+        WalledParticles again(scene);
         for (const double at : {2.0, 5.0, 9.0, 14.0}) run_to(again, at);
         check(again);
     }
     for (MemoryArchive& archive : kept) {
-        WalledColumns resumed(scene, Start::resumed);
+        WalledParticles resumed(scene, Start::resumed);
         resumed.serialize(archive.rewind());
         for (const double at : {2.0, 5.0, 9.0, 14.0})
             if (at > resumed.status().time) run_to(resumed, at);
@@ -227,13 +227,13 @@ TEST_CASE("A deposit that has become ground before a barrier takes no momentum f
         add_second(s);
         leave_deposits(s);
     };
-    WalledColumns flow(slide(add_second)), ground(slide(as_ground));
-    const auto over_by = [](WalledColumns& run, double time) {
+    WalledParticles flow(slide(add_second)), ground(slide(as_ground));
+    const auto over_by = [](WalledParticles& run, double time) {
         run_to(run, time);
         return run.loads()->barriers.at(0).overtopped;
     };
     const double of_flow = over_by(flow, 11.9), of_ground = over_by(ground, 11.9);
-    REQUIRE(of_ground < flow.status().mass / flow.columns().flow().density);
+    REQUIRE(of_ground < flow.status().mass / flow.particles().flow().density);
     REQUIRE(ground.status().bed.deposited > 0.0);
     // What is still flow is pushed ahead and takes its share of the second slide's momentum; ground carries it up.
     CHECK(over_by(ground, 24.0) - of_ground > 2.0 * (over_by(flow, 24.0) - of_flow));
@@ -266,9 +266,9 @@ TEST_CASE("Barriers in loose ground on a part that grows are those of a run on a
     whole.bed = ground_on(kLarge);
     whole.wider.reset();
     loosen(whole, kSlow);
-    WalledColumns part(on_part), all(whole);
-    const Index held = part.columns().flow().grid.size();
-    while (part.columns().flow().grid.size() == held) {
+    WalledParticles part(on_part), all(whole);
+    const Index held = part.particles().flow().grid.size();
+    while (part.particles().flow().grid.size() == held) {
         part.advance(1e9), all.advance(1e9);
         REQUIRE(part.status().time < 60.0);
     }
@@ -280,7 +280,7 @@ TEST_CASE("Barriers in loose ground on a part that grows are those of a run on a
     CHECK(part.loads()->barriers.at(0).overtopped == Approx(all.loads()->barriers.at(0).overtopped).epsilon(1e-9));
     CHECK(part.loads()->barriers.at(0).run_up > part.loads()->barriers.at(0).about.z());
     CHECK(part.remarks() != all.remarks());  // which tell of the part
-    const auto told = [](const WalledColumns& run) {
+    const auto told = [](const WalledParticles& run) {
         const auto remarks = run.remarks();
         return std::count_if(remarks.begin(), remarks.end(), [](const std::string& remark) {
             return remark.find("loose ground under barriers") != std::string::npos;
@@ -299,9 +299,9 @@ TEST_CASE("A run that grew among barriers, trees and deposits goes on after a re
     grow_with(scene, [trees_on](const Raster& part) {
         return GroundFields{{}, Raster::filled(part.geometry, kLoose), trees_on(part)};
     });
-    WalledColumns straight(scene);
-    const Index held = straight.columns().flow().grid.size();
-    while (straight.columns().flow().grid.size() == held) {
+    WalledParticles straight(scene);
+    const Index held = straight.particles().flow().grid.size();
+    while (straight.particles().flow().grid.size() == held) {
         straight.advance(1e9);
         REQUIRE(straight.status().time < 60.0);
     }
@@ -310,10 +310,10 @@ TEST_CASE("A run that grew among barriers, trees and deposits goes on after a re
     for (int step = 0; step < 40; ++step) straight.advance(1e9);
     CHECK(straight.status().bed.eroded > 0.0);
     CHECK(straight.status().bed.deposited > 0.0);
-    WalledColumns resumed(scene, Start::resumed);
+    WalledParticles resumed(scene, Start::resumed);
     resumed.serialize(kept.rewind());
     for (int step = 0; step < 40; ++step) resumed.advance(1e9);
-    check_same(resumed.columns(), straight.columns(), "bed/fresh");
+    check_same(resumed.particles(), straight.particles(), "bed/fresh");
     require_same(resumed, straight);
     CHECK(resumed.remarks() == straight.remarks());
 }

@@ -250,7 +250,7 @@ TEST_CASE("With all of FLIP the first frame shows the velocities that points sta
         scene.particles.vx[p] = std::sin(static_cast<double>(p));
     DepthAveraged simulation(scene);
     const Frame first = simulation.frame();
-    const Columns& points = simulation.flow().columns;
+    const Particles& points = simulation.flow().particles;
     const Field& velocity = *first.particle("velocity");
     double largest = 0.0;
     for (Index p = 0; p < velocity.count; ++p) {

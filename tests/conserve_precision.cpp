@@ -78,10 +78,10 @@ TEST_CASE("Single precision gives the same bits with one, two and four threads",
 
 TEST_CASE("Single precision takes less than 0.7 of the memory of double", "[precision]") {
     const int threads = omp_get_max_threads();
-    omp_set_num_threads(1);  // each thread has room to sort a column of doubles
+    omp_set_num_threads(1);  // each thread has room to sort an array of doubles
     DepthAveraged wide(blob(Precision::full)), narrow(blob(Precision::single));
     for (int step = 0; step < 10; ++step) wide.advance(1e9), narrow.advance(1e9);
-    // columns: 68 B of 112; sorting: 8 B of 8 for the order, 8 of 8 of scratch a thread
+    // particles: 68 B of 112; sorting: 8 B of 8 for the order, 8 of 8 of scratch a thread
     CHECK(static_cast<double>(narrow.particle_bytes()) < 0.7 * static_cast<double>(wide.particle_bytes()));
     omp_set_num_threads(threads);
 }

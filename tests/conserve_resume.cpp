@@ -88,8 +88,9 @@ TEST_CASE("A saved state goes on with the same bits, with points that split, mer
     const Threads restored;
     const Scene scene = slide();
     const auto end = check_resume(scene, 4.0, 1, 1);
-    CHECK(end->flow().columns.count() != scene.particles.count());
-    CHECK(*std::max_element(end->flow().columns.id.begin(), end->flow().columns.id.end()) >= scene.particles.count());
+    CHECK(end->flow().particles.count() != scene.particles.count());
+    CHECK(*std::max_element(end->flow().particles.id.begin(), end->flow().particles.id.end()) >=
+          scene.particles.count());
     CHECK(end->status().mass_left > 0.0);
 }
 
@@ -124,10 +125,10 @@ TEST_CASE("A saved state goes on with the same bits whatever the scheme", "[resu
     SECTION("walls") {
         const auto end = check_resume(slide([](Scene& scene) { scene.sides = Sides::wall; }), 4.0, 1, 1);
         double furthest = 0.0;
-        for (const double x : end->flow().columns.x) furthest = std::max(furthest, x);
-        CHECK(furthest > 64.0);                   // the mass came to a wall
-        const auto& id = end->flow().columns.id;  // nothing left, so fewer points than ids ever given have merged
-        CHECK(end->flow().columns.count() < 1 + *std::max_element(id.begin(), id.end()));
+        for (const double x : end->flow().particles.x) furthest = std::max(furthest, x);
+        CHECK(furthest > 64.0);                     // the mass came to a wall
+        const auto& id = end->flow().particles.id;  // nothing left, so fewer points than ids ever given have merged
+        CHECK(end->flow().particles.count() < 1 + *std::max_element(id.begin(), id.end()));
     }
     SECTION("a Bingham rheology and its forces") {
         check_resume(slide([](Scene& scene) { scene.rheology = rheology::Bingham{50, 200}; }), 2.0, 1, 1);

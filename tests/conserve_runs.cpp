@@ -59,7 +59,7 @@ TEST_CASE("A viscous mass spreads along x as along y, to round-off", "[conserve]
     fill(scene, [](double x, double y) { return std::hypot(x - 20, y - 20) < 8 ? 2.0 : 0.0; });
     DepthAveraged simulation(scene);
     run_to(simulation, 1.0);
-    const Columns& c = simulation.flow().columns;
+    const Particles& c = simulation.flow().particles;
     double along_x = 0.0, along_y = 0.0;
     for (Index p = 0; p < c.count(); ++p) {
         along_x += c.mass[p] * std::abs(c.vx[p]);
@@ -102,11 +102,11 @@ TEST_CASE("Material that reaches nodata leaves and is counted", "[conserve]") {
     run_to(simulation, 6.0);
     CHECK(simulation.status().mass_left > 0.5 * mass);
     CHECK(mass_error(simulation.status(), mass) <= 1e-13);
-    for (const double x : simulation.flow().columns.x) CHECK(x < 46.0);
+    for (const double x : simulation.flow().particles.x) CHECK(x < 46.0);
 }
 
 TEST_CASE("One, two and four threads give the same bits", "[conserve][threads]") {
-    std::vector<Columns> ends;
+    std::vector<Particles> ends;
     const int threads_before = omp_get_max_threads();
     for (const int threads : {1, 2, 4}) {
         omp_set_num_threads(threads);
@@ -115,7 +115,7 @@ TEST_CASE("One, two and four threads give the same bits", "[conserve][threads]")
         DepthAveraged simulation(scene);
         REQUIRE(simulation.flow().active.count() >= kTilesForThreads);  // or one thread does it all
         run_to(simulation, 2.0);
-        ends.push_back(simulation.flow().columns);
+        ends.push_back(simulation.flow().particles);
     }
     omp_set_num_threads(threads_before);
     for (std::size_t run = 1; run < ends.size(); ++run) {
@@ -134,8 +134,8 @@ TEST_CASE("Looking at a run does not change it", "[conserve]") {
         watched.advance(3.0);
         watched.frame();
     }
-    CHECK(alone.flow().columns.x == watched.flow().columns.x);
-    CHECK(alone.flow().columns.vy == watched.flow().columns.vy);
+    CHECK(alone.flow().particles.x == watched.flow().particles.x);
+    CHECK(alone.flow().particles.vy == watched.flow().particles.vy);
 }
 
 TEST_CASE("Looking at a run between walls does not change it, and its momentum closes", "[conserve]") {
@@ -152,8 +152,8 @@ TEST_CASE("Looking at a run between walls does not change it, and its momentum c
             REQUIRE(std::abs(seen.momentum[axis] + seen.momentum_left[axis] - seen.impulse[axis]) <=
                     1e-12 * seen.mass * (1.0 + seen.max_speed));
     }
-    CHECK(alone.flow().columns.x == watched.flow().columns.x);
-    CHECK(alone.flow().columns.vy == watched.flow().columns.vy);
+    CHECK(alone.flow().particles.x == watched.flow().particles.x);
+    CHECK(alone.flow().particles.vy == watched.flow().particles.vy);
 }
 
 TEST_CASE("A plane between walls has no curvature", "[conserve]") {

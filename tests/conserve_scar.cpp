@@ -1,8 +1,8 @@
 // Later releases that stand in the bed until they go: the bed falls then, as one that was cut at the start.
 #include "analytic_scene.h"
 #include "catch.h"
-#include "coupling/growing_columns.h"
-#include "coupling/walled_columns.h"
+#include "coupling/growing_particles.h"
+#include "coupling/walled_particles.h"
 #include "growing_slope.h"
 #include "observe/budget.h"
 #include "run/memory_state.h"
@@ -132,7 +132,7 @@ TEST_CASE("A release that stands in the bed until it goes is one on a bed that w
         REQUIRE(late.extras().late.at(0).entered == kAt);
         REQUIRE(late.extras().late.at(0).of_bed);
         check_same_bed(late, from_start, 1600.0, 2e-8);
-        CHECK((late.flow().columns.x == from_start.flow().columns.x));
+        CHECK((late.flow().particles.x == from_start.flow().particles.x));
         CHECK(std::abs(budget(first, late.status()).energy_residual) <= 1e-12 * late.status().potential);
         const double above = late.status().potential;
         CHECK(above == Approx(from_start.status().potential).epsilon(1e-13));
@@ -304,7 +304,7 @@ TEST_CASE("A bed that fell stays so where the terrain grows, and next to barrier
     fill(scene, heap);
     bury(scene, "early", 3.0, [](double x, double y) { return std::hypot(x - 1300, y - 400) < 40 ? 3.0 : 0.0; });
     bury(scene, "late", 16.0, [](double x, double y) { return std::hypot(x - 1150, y - 420) < 40 ? 3.0 : 0.0; });
-    GrowingColumns part(scene);
+    GrowingParticles part(scene);
     Scene whole_scene = scene;
     whole_scene.wider.reset();
     whole_scene.bed = scene.wider->read(NodeBox::all(scene.wider->grid));
@@ -333,7 +333,7 @@ TEST_CASE("A bed that fell stays so where the terrain grows, and next to barrier
     wall.line = {{56, 15}, {56, 30}};
     wall.height = 1.0;
     walled.barriers = {wall};
-    WalledColumns run(walled);
+    WalledParticles run(walled);
     const Status start = run.status();
     const Frame before = run.frame();
     const double* z0 = of(before, "elevation");

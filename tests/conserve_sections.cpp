@@ -48,7 +48,7 @@ bool beyond(double x, double y) {
 }
 
 double volume_beyond(const DepthAveraged& run) {
-    const Columns& c = run.flow().columns;
+    const Particles& c = run.flow().particles;
     double mass = 0.0;
     for (Index p = 0; p < c.count(); ++p)
         if (beyond(run.flow().cell * c.x[p], run.flow().cell * c.y[p])) mass += c.mass[p];
@@ -215,8 +215,8 @@ TEST_CASE("Sections do not change a run", "[sections]") {
     DepthAveraged without(scene);
     run_to(with, 5.0), run_to(without, 5.0);
     CHECK(with.status().momentum == without.status().momentum);
-    CHECK(with.flow().columns.x == without.flow().columns.x);
-    CHECK(with.flow().columns.id == without.flow().columns.id);
+    CHECK(with.flow().particles.x == without.flow().particles.x);
+    CHECK(with.flow().particles.id == without.flow().particles.id);
 }
 
 TEST_CASE("sections/NAME.csv has a row a step, whatever the outputs", "[sections]") {

@@ -1,4 +1,4 @@
-// What becomes of material before a barrier when the 3D stage ends and its points are columns again.
+// What becomes of material before a barrier when the 3D stage ends and its points are particles again.
 #include <algorithm>
 #include <cmath>
 
@@ -156,7 +156,8 @@ TEST_CASE("What is moved to dry ground lies no higher there than it was, and los
     CHECK(energy == Approx(12e3).epsilon(1e-13));
 }
 
-// Columns would gain the ramp's height there. The water stands on 1.5 m before the wall, of which the ramp covers all.
+// Particles would gain the ramp's height there. The water stands on 1.5 m before the wall, of which the ramp covers
+// all.
 TEST_CASE("Water that stands only on a wall's ramp gains no height when its 3D stage ends", "[stages][barrier]") {
     const double from = GENERATE(34.5, 33.5, 32.5);
     CAPTURE(from);
@@ -192,7 +193,7 @@ TEST_CASE("Sums of a 3D stage from the start begin with its points, and later th
     const StagedRun at_once(scene);
     const Status& first = at_once.status();
     const double round_off = 1e-13 * first.potential;
-    CHECK(std::abs(first.dissipated) < round_off);  // the ramp would have lifted columns: 277 kJ
+    CHECK(std::abs(first.dissipated) < round_off);  // the ramp would have lifted particles: 277 kJ
     CHECK(std::abs(first.in_3d.numerical) < round_off);
     CHECK(first.energy_left == 0.0);
     CHECK(first.potential == Approx(first.mass * scene.gravity * (kLakeBed + 0.5 * kLakeDepth)).epsilon(1e-12));

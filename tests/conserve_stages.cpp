@@ -1,4 +1,4 @@
-// Runs in stages: columns that become 3D points keep mass, momentum and energy, at once and as they
+// Runs in stages: particles that become 3D points keep mass, momentum and energy, at once and as they
 // flow in.
 #include <omp.h>
 
@@ -79,15 +79,15 @@ double total(const Field* field, Index from, Index to) {
 
 }  // namespace
 
-TEST_CASE("Columns that become points conserve mass, momentum and energy, at once and later", "[stages]") {
+TEST_CASE("Particles that become points conserve mass, momentum and energy, at once and later", "[stages]") {
     const Scene scene = slide();
     StagedRun run(scene);
     const double mass = run.status().mass, momentum = run.status().momentum[0];
     run_to(run, scene.solid->from);
     REQUIRE(run.points() != nullptr);
     REQUIRE(run.points()->status().points > 1000);
-    REQUIRE(run.columns().status().particles > 50);
-    // The energies of columns and points differ by the bed: averaged over a cell, or bilinear; on a plane
+    REQUIRE(run.particles().status().particles > 50);
+    // The energies of particles and points differ by the bed: averaged over a cell, or bilinear; on a plane
     // they agree.
     const double round_off = 1e-12;
     const Status before = run.status();
@@ -104,8 +104,9 @@ TEST_CASE("Columns that become points conserve mass, momentum and energy, at onc
         most = std::max(most, run.points()->status().points);
     }
     CHECK(worst < round_off);
-    // Everything has flowed into the window, and some of it out again: as columns, and at the sides out of the terrain.
-    CHECK(run.columns().status().mass > 0.1 * mass);
+    // Everything has flowed into the window, and some of it out again: as particles, and at the sides out of the
+    // terrain.
+    CHECK(run.particles().status().mass > 0.1 * mass);
     CHECK(run.status().mass_left > 0.1 * mass);
     CHECK(most > run.points()->status().points);
 }
@@ -136,16 +137,16 @@ TEST_CASE("A sheet that is drawn out becomes points without gaps", "[stages]") {
 TEST_CASE("Particles of the paper preset, whose domains stay as they were, become points on squares of their volume",
           "[stages]") {
     Scene scene = slide();
-    DepthAveraged columns(scene);
-    const Columns& points = columns.flow().columns;
+    DepthAveraged particles(scene);
+    const Particles& points = particles.flow().particles;
     CHECK(domains_of(points, 1.0, scene.scheme).size() == static_cast<std::size_t>(points.count()));
     scene.scheme.paper_pressure = true;
     const std::vector<Mat2> none = domains_of(points, 1.0, scene.scheme);
     CHECK(none.empty());
     const std::vector<std::uint8_t> all(static_cast<std::size_t>(scene.bed.geometry.size()), 1);
-    const FlowColumns flat = columns_of(columns.frame(), none, scene.bed, all);
+    const FlowParticles flat = particles_of(particles.frame(), none, scene.bed, all);
     REQUIRE(flat.count() == static_cast<std::size_t>(points.count()));
-    const FlowColumns parts = in_parts(flat, 0.125, 1.0, scene.bed, {0.0, 0.0, 40.0, 12.0});
+    const FlowParticles parts = in_parts(flat, 0.125, 1.0, scene.bed, {0.0, 0.0, 40.0, 12.0});
     const double width = std::sqrt(flat.volume[0] / flat.depth[0]);  // of a square, in parts of an eighth of a metre
     CHECK(parts.x[0] == Approx(flat.x[0] + width * (0.5 / std::round(width / 0.125) - 0.5)));
 }
@@ -160,7 +161,7 @@ TEST_CASE("A slab that slides becomes 3D and particles again without a change of
                              BedLaw(bed::Pouliquen{mu, 0.6, 0.3, 0.05, 0.6}));
     const bool coulomb = std::holds_alternative<bed::Coulomb>(scene.bed_law);
     scene.end = 3.0;
-    DepthAveraged columns(scene);
+    DepthAveraged particles(scene);
     SolidStage stage;
     stage.from = 0.5, stage.until = 2.0;
     stage.window = {0, 0, 80, 20};
@@ -179,8 +180,8 @@ TEST_CASE("A slab that slides becomes 3D and particles again without a change of
         return moment / sum;
     };
     const double before = middle(run);
-    run_to(run, scene.end), run_to(columns, scene.end);
-    const double way = middle(run) - before, alone = middle(columns) - before;
+    run_to(run, scene.end), run_to(particles, scene.end);
+    const double way = middle(run) - before, alone = middle(particles) - before;
     CAPTURE(scene.bed_law.index(), way, alone);
     CHECK(alone > 10.0);
     // Under Coulomb's law the middle of the mass goes as a block does, however the slab spreads. Laws of the mean speed and the
@@ -194,9 +195,9 @@ TEST_CASE("A slab that slides becomes 3D and particles again without a change of
     }
 }
 
-// A bed that holds mud on cells of half a metre drags far too much, and columns that feel no such drag drive it on. The front of
-// a slide like this one came to 50 m/s in a second, where columns have 18 m/s.
-TEST_CASE("Fast mud in 3D is as fast as in columns, and no point has more energy than the fall gives", "[stages]") {
+// A bed that holds mud on cells of half a metre drags far too much, and particles that feel no such drag drive it on.
+// The front of a slide like this one came to 50 m/s in a second, where particles have 18 m/s.
+TEST_CASE("Fast mud in 3D is as fast as in particles, and no point has more energy than the fall gives", "[stages]") {
     constexpr double slope = 0.5, depth = 1.0, speed = 12.0, end = 1.6;
     const bool window = GENERATE(false, true);
     CAPTURE(window);
@@ -208,7 +209,7 @@ TEST_CASE("Fast mud in 3D is as fast as in columns, and no point has more energy
     scene.density = 1500.0;
     scene.bed_law = bed::Bingham{20.0, 500.0, 0.0};
     scene.end = end;
-    DepthAveraged columns(scene);
+    DepthAveraged particles(scene);
     SolidStage stage;
     stage.from = 0.1;
     stage.window = {window ? 40 : 0, 0, 80, 4};
@@ -218,11 +219,11 @@ TEST_CASE("Fast mud in 3D is as fast as in columns, and no point has more energy
     stage.stuck_where_resolved = stage.whole_bed_law = true;
     scene.solid = stage;
     StagedRun run(scene);
-    run_to(run, end), run_to(columns, end);
+    run_to(run, end), run_to(particles, end);
     REQUIRE(run.points()->status().points > 100);
-    // Columns have no layer that shears and no upright motion: to 5 % of their speed. (Columns on cells of half and a quarter
-    // of these have 1 % more energy than here; points feel the thin front on two cells.)
-    CHECK(run.status().kinetic == Approx(columns.status().kinetic).epsilon(0.1));
+    // Particles have no layer that shears and no upright motion: to 5 % of their speed. (Particles on cells of half and
+    // a quarter of these have 1 % more energy than here; points feel the thin front on two cells.)
+    CHECK(run.status().kinetic == Approx(particles.status().kinetic).epsilon(0.1));
     const double head = 50.0 - slope * 2.0 + depth + 0.5 * speed * speed * (1.0 + slope * slope) / scene.gravity;
     for (Index p = 0; p < run.points()->body().points.count(); ++p)
         REQUIRE(run.points()->position(p).z() + 0.5 * run.points()->velocity(p).squaredNorm() / scene.gravity < head);
@@ -250,30 +251,30 @@ TEST_CASE("Mud sticks to its bed where cells show the layer that shears there, o
     SolidStage stage;
     stage.window = {0, 0, 10, 10};
     stage.law = law;
-    FlowColumns columns;
-    columns.x = columns.y = {5.0}, columns.bed = {0.0}, columns.depth = {depth},
-    columns.slope_x = columns.slope_y = {0.0};
-    columns.vx = {0.0}, columns.vy = {0.0}, columns.mass = {density * depth}, columns.volume = {depth};
-    columns.bed_pressure = {0.0}, columns.id = {0.0}, columns.domain = {Mat2::Identity()};
+    FlowParticles particles;
+    particles.x = particles.y = {5.0}, particles.bed = {0.0}, particles.depth = {depth},
+    particles.slope_x = particles.slope_y = {0.0};
+    particles.vx = {0.0}, particles.vy = {0.0}, particles.mass = {density * depth}, particles.volume = {depth};
+    particles.bed_pressure = {0.0}, particles.id = {0.0}, particles.domain = {Mat2::Identity()};
     // At rest it may come to what its weight drives it to, 21 kPa less 0.3 kPa of yield stress, or to a fall by its depth.
     constexpr double own = 2.0889, fall = 4.8522;
     const double held = resolving_cell(law, density, depth, own);
     const auto stuck = [&](double of_held, bool told, bool where_resolved) {
         stage.cell = of_held * held, stage.stuck = told, stage.stuck_where_resolved = where_resolved;
         scene.solid = stage;
-        return choose_start(scene, columns).stuck;
+        return choose_start(scene, particles).stuck;
     };
     CHECK(stuck(0.99, false, true));
     CHECK_FALSE(stuck(1.01, false, true));
     CHECK_FALSE(stuck(0.99, false, false));
     CHECK(stuck(1.01, true, false));
-    CHECK(choose_start(scene, columns).speed == Approx(own).epsilon(1e-4));
+    CHECK(choose_start(scene, particles).speed == Approx(own).epsilon(1e-4));
     std::get<solid::Bingham>(scene.solid->law).viscosity = 400.0;
-    CHECK(choose_start(scene, columns).speed == Approx(fall).epsilon(1e-4));
-    columns.vx = {7.0};  // what it has, and the fall besides
-    CHECK(choose_start(scene, columns).speed == Approx(std::hypot(7.0, fall)).epsilon(1e-4));
+    CHECK(choose_start(scene, particles).speed == Approx(fall).epsilon(1e-4));
+    particles.vx = {7.0};  // what it has, and the fall besides
+    CHECK(choose_start(scene, particles).speed == Approx(std::hypot(7.0, fall)).epsilon(1e-4));
     std::get<solid::Bingham>(scene.solid->law).yield_stress = 22e3;  // more than its weight
-    CHECK(choose_start(scene, columns).speed == Approx(7.0));
+    CHECK(choose_start(scene, particles).speed == Approx(7.0));
 }
 
 // A slope of 0.1 under half a metre: 880 Pa of 900.
@@ -293,13 +294,13 @@ TEST_CASE("Mud that slides by its bed law rests where its yield stress holds it"
     stage.whole_bed_law = true;
     scene.solid = stage;
     StagedRun run(scene);
-    DepthAveraged columns(scene);
-    run_to(run, 1.0), run_to(columns, 1.0);
+    DepthAveraged particles(scene);
+    run_to(run, 1.0), run_to(particles, 1.0);
     const double fall = scene.gravity * 0.1 * 1.0;  // speed in that time without a bed
     if (yield_stress > 880.0)
         CHECK(run.status().mean_speed < 0.01 * fall);
     else  // the walls at both ends disturb it alike
-        CHECK(run.status().mean_speed == Approx(columns.status().mean_speed).epsilon(0.1));
+        CHECK(run.status().mean_speed == Approx(particles.status().mean_speed).epsilon(0.1));
 }
 
 TEST_CASE("Sand by the bed law is as strong inside as the flow needs, whatever a film at its margin does", "[stages]") {
@@ -311,17 +312,17 @@ TEST_CASE("Sand by the bed law is as strong inside as the flow needs, whatever a
     stage.of_bed = stage.whole_bed_law = true;
     stage.bed_friction = mu;
     scene.solid = stage;
-    const auto add = [&](FlowColumns& columns, double depth, double speed) {
-        FlowColumns one;
+    const auto add = [&](FlowParticles& particles, double depth, double speed) {
+        FlowParticles one;
         one.x = one.y = {5.0}, one.bed = {49.0}, one.depth = {depth}, one.slope_x = {-slope}, one.slope_y = {0.0};
         one.vx = {speed}, one.vy = {0.0}, one.mass = {1000.0 * depth}, one.volume = {depth}, one.bed_pressure = {0.0};
         one.id = {0.0}, one.domain = {Mat2::Identity()};
-        columns.take(one, 0);
+        particles.take(one, 0);
     };
-    FlowColumns still;
+    FlowParticles still;
     add(still, 2.0, 0.0);
     CHECK(choose_start(scene, still).friction == Approx(slope));  // that of the fastest flow on this slope
-    FlowColumns fast;
+    FlowParticles fast;
     add(fast, 2.0, 20.0);
     // Voellmy: mu + v^2 / (xi h cos), v along the bed and h across it.
     const double cosine = 1.0 / std::hypot(1.0, slope), along = 20.0 / cosine;
@@ -337,8 +338,8 @@ TEST_CASE("Sand by the bed law is as strong inside as the flow needs, whatever a
     CHECK(choose_start(scene, fast).friction == mu);
 }
 
-// At an open edge half of what a node holds is columns. Without them the flow would seem half as deep there.
-TEST_CASE("The flow that a bed law sees at the edge of points has the columns beyond it", "[stages]") {
+// At an open edge half of what a node holds is particles. Without them the flow would seem half as deep there.
+TEST_CASE("The flow that a bed law sees at the edge of points has the particles beyond it", "[stages]") {
     constexpr double slope = 0.2, depth = 2.0, speed = 5.0, spacing = 0.5;
     Scene scene = scene_on(21, 11, 1.0, [](double x, double) { return 50.0 - slope * x; });
     scene.density = 1000.0;
@@ -347,17 +348,17 @@ TEST_CASE("The flow that a bed law sees at the edge of points has the columns be
     space.density = scene.density;
     space.law = solid::Fluid{1e6, 0.0};
     space.grid = {Vec3(-1, -1, 40), 0.5, {47, 27, 40}};
-    FlowColumns columns;
+    FlowParticles particles;
     for (double x = 0.25; x < 20.0; x += spacing)
         for (double y = 0.25; y < 10.0; y += spacing) {
             const double mass = scene.density * depth * spacing * spacing, bed = 50.0 - slope * x;
             if (x < 10.0) {
-                FlowColumns one;
+                FlowParticles one;
                 one.x = {x}, one.y = {y}, one.bed = {bed}, one.depth = {depth}, one.slope_x = {-slope},
                 one.slope_y = {0.0};
                 one.vx = {speed}, one.vy = {0.0}, one.mass = {mass}, one.volume = {mass / scene.density};
                 one.bed_pressure = {0.0}, one.id = {0.0}, one.domain = {Mat2::Identity()};
-                columns.take(one, 0);
+                particles.take(one, 0);
             } else {
                 space.points.add({x, y, bed + 1.0}, Vec3(speed, 0.0, -slope * speed), mass, 0.0);
             }
@@ -366,7 +367,7 @@ TEST_CASE("The flow that a bed law sees at the edge of points has the columns be
     map.sample(points, 0.0);
     const FlowMap::Mean half = map.mean_at({10.0, 5.0});
     for (int told = 0; told < 2; ++told) {  // the second time in place of the first
-        map.set_adjacent(columns);
+        map.set_adjacent(particles);
         for (const double x : {5.0, 9.5, 10.0, 10.5, 15.0}) {
             const FlowMap::Mean here = map.mean_at({x, 5.0});
             CHECK(here.depth == Approx(depth).epsilon(1e-12));
@@ -407,7 +408,7 @@ TEST_CASE("A window that nothing has reached yet waits with sound and room for w
     run_to(run, 2.0);
     CHECK(run.points()->status().points > 1000);
     CHECK(mass_error(run.status(), mass) < 1e-12);
-    // Sound is ten times as fast as the 8 m/s and more of the columns: points of water stay nearly as dense.
+    // Sound is ten times as fast as the 8 m/s and more of the particles: points of water stay nearly as dense.
     CHECK(run.points()->status().volume == Approx(run.points()->status().mass / scene.density).epsilon(0.02));
 }
 
@@ -437,7 +438,7 @@ TEST_CASE("A 3D stage from the start takes the release as it is", "[stages]") {
     scene.solid->window = {0, 0, 40, 12};
     StagedRun run(scene);
     const SolidStatus& points = run.points()->status();
-    CHECK(run.columns().status().particles == 0);
+    CHECK(run.particles().status().particles == 0);
     CHECK(points.mass == Approx(scene.density * 12 * 6 * 1.5).epsilon(1e-12));
     CHECK(points.points == 48 * 24 * 6);
     CHECK(points.momentum.x() == Approx(8.0 * points.mass).epsilon(1e-12));
@@ -467,7 +468,7 @@ TEST_CASE("Sand starts pressed from all sides by its column's weight, as fluids 
     }
 }
 
-TEST_CASE("Points do not cross a closed side that columns still flow in over", "[stages]") {
+TEST_CASE("Points do not cross a closed side that particles still flow in over", "[stages]") {
     Scene scene = slide(0.05);
     std::fill(scene.bed.values.begin(), scene.bed.values.end(), 20.0);
     scene.particles.vx.assign(scene.particles.x.size(), 0.0);  // slower than its waves
@@ -526,11 +527,11 @@ TEST_CASE("Runs in stages have the same bits for any number of threads, and when
     take_up_again(slide(), {0.3, 0.55}, 0.7, false);
 }
 
-TEST_CASE("So have runs whose columns take up their bed before the window", "[stages][threads][erosion]") {
+TEST_CASE("So have runs whose particles take up their bed before the window", "[stages][threads][erosion]") {
     take_up_again(over_loose_ground(), {0.3, 0.55}, 0.7, false);
 }
 
-TEST_CASE("Columns take up their bed before and beside a 3D stage, and the bed in its window stays",
+TEST_CASE("Particles take up their bed before and beside a 3D stage, and the bed in its window stays",
           "[stages][erosion]") {
     const Scene scene = over_loose_ground();
     StagedRun run(scene);
@@ -555,7 +556,7 @@ TEST_CASE("Columns take up their bed before and beside a 3D stage, and the bed i
             const Index k = j * frame.grid.nx + i;
             const double sunk = ground[static_cast<std::size_t>(k)] - elevation.data[k];
             deepest = std::max(deepest, sunk);
-            // A plane: the columns' bed, a mean of nodes around, is the points' ground to round-off.
+            // A plane: the particles' bed, a mean of nodes around, is the points' ground to round-off.
             if (i >= w[0] - 2) CHECK(sunk == Approx(0.0).margin(i >= w[0] ? 1e-13 : 0.0));
         }
     CHECK(deepest > 0.05);
@@ -570,8 +571,8 @@ TEST_CASE("So have runs whose ground brakes points by the whole bed law", "[stag
     take_up_again(scene, {0.3, 0.55}, 0.7, false);
 }
 
-// Those that came in last lie at the edge, where the bed law would go on to count the columns that they were.
-TEST_CASE("So have runs whose columns have all become points", "[stages][threads]") {
+// Those that came in last lie at the edge, where the bed law would go on to count the particles that they were.
+TEST_CASE("So have runs whose particles have all become points", "[stages][threads]") {
     Scene scene = slide_through();
     scene.solid->window = {12, 0, 30, 12};
     scene.bed_law = bed::Voellmy{0.1, 200.0};
@@ -580,14 +581,15 @@ TEST_CASE("So have runs whose columns have all become points", "[stages][threads
     scene.solid->transfer = Transfer::flip, scene.solid->blending = 0.2;
     scene.solid->closed = {false, true, true, true};
     StagedRun run(scene);
-    while ((!run.points() || run.columns().status().particles > 0) && run.status().time < scene.end)
+    while ((!run.points() || run.particles().status().particles > 0) && run.status().time < scene.end)
         run.advance(scene.end);
     const double gone = run.status().time + 0.01;
     REQUIRE(gone < 1.5);
     take_up_again(scene, {gone}, gone + 0.15, false);
 }
 
-TEST_CASE("So have runs whose points become columns, on their way when it stops, and whose 3D stage ends", "[stages]") {
+TEST_CASE("So have runs whose points become particles, on their way when it stops, and whose 3D stage ends",
+          "[stages]") {
     Scene scene = slide_through();
     scene.solid->until = 0.95;
     take_up_again(scene, {0.85, 0.9, 0.97}, 1.0, true);
@@ -643,7 +645,7 @@ TEST_CASE("A conversion refused on the way ends the run as refused, with the las
     CHECK(mass_error(summary.last, mass) < 1e-12);
 }
 
-TEST_CASE("Points that leave their window onto a wall in a hole become columns before it", "[stages][holes]") {
+TEST_CASE("Points that leave their window onto a wall in a hole become particles before it", "[stages][holes]") {
     Scene scene = slide_through();
     for (const Index i : {19, 20})
         for (const Index j : {5, 6, 7}) scene.bed.at(i, j) = Raster::nodata;
@@ -660,7 +662,7 @@ TEST_CASE("Points that leave their window onto a wall in a hole become columns b
         const Status& now = run.status();
         REQUIRE(std::abs(now.mass + now.mass_left - mass) < 1e-12 * mass);
         REQUIRE(now.mass_left < 1e-12 * mass);
-        const Columns& c = run.columns().flow().columns;
+        const Particles& c = run.particles().flow().particles;
         for (Index p = 0; p < c.count(); ++p)
             if (c.x[p] > 20.5) behind = std::max(behind, c.mass[p]);
     }
@@ -683,11 +685,11 @@ TEST_CASE("Points that leave their window onto the wall of a hole as wide as the
     CHECK(mass_error(run.status(), mass) < 1e-12);
     const std::vector<std::string> remarks = run.remarks();
     CHECK(std::any_of(remarks.begin(), remarks.end(), [](const std::string& remark) {
-        return remark.find("m3 became columns on ground that barriers or walls in holes raise") != std::string::npos;
+        return remark.find("m3 became particles on ground that barriers or walls in holes raise") != std::string::npos;
     }));
 }
 
-TEST_CASE("Points that become columns are as deep as what is there, and at least as all that is new", "[stages]") {
+TEST_CASE("Points that become particles are as deep as what is there, and at least as all that is new", "[stages]") {
     Scene scene = slide();  // cells of 1 m: quarters of 0.25 m2
     scene.density = 2000.0;
     const auto point = [](double x, double y, double mass) {
@@ -697,9 +699,9 @@ TEST_CASE("Points that become columns are as deep as what is there, and at least
     };
     // Two on one quarter, one on another.
     const std::vector<DepartedPoint> points = {point(20.1, 5.1, 30.0), point(20.3, 5.2, 70.0), point(22.6, 5.1, 100.0)};
-    const ColumnsAt at{1.0, [](const DepartedPoint&, const Vec2& to) { return to; },
-                       [](const Vec2& x) { return x.x() < 21.0 ? 0.05 : 0.7; }};
-    const Seeds seeds = columns_of(points, scene, at).seeds;
+    const ParticlesAt at{1.0, [](const DepartedPoint&, const Vec2& to) { return to; },
+                         [](const Vec2& x) { return x.x() < 21.0 ? 0.05 : 0.7; }};
+    const Seeds seeds = particles_of(points, scene, at).seeds;
     REQUIRE(seeds.count() == 2);
     CHECK(seeds.depth[0] == Approx(100.0 / 2000.0 / 0.25).epsilon(1e-14));  // new material stands higher than 0.05 m
     CHECK(seeds.depth[1] == 0.7);
@@ -714,7 +716,7 @@ TEST_CASE("The map of points follows whenever they may have moved by a quarter o
     const auto seen = [&] {
         std::vector<double> depths;
         for (double x = 12.0; x <= 30.0; x += 1.0)
-            depths.push_back(run.at({x, 6.0}).depth - run.columns().at({x, 6.0}).depth);
+            depths.push_back(run.at({x, 6.0}).depth - run.particles().at({x, 6.0}).depth);
         return depths;
     };
     std::vector<double> before = seen();

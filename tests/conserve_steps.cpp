@@ -19,7 +19,7 @@ Scene film_on_cliff() {
 }
 
 /// Largest distance of a point from where it was [cells].
-double farthest(const Columns& before, const Columns& now) {
+double farthest(const Particles& before, const Particles& now) {
     double most = 0.0;
     for (Index p = 0; p < before.count(); ++p)
         for (Index q = 0; q < now.count(); ++q)
@@ -35,10 +35,10 @@ TEST_CASE("A film at rest on a cliff of many cells begins with a step that it ca
     DepthAveraged simulation(scene);
     double fastest = 0.0, most = 0.0;
     while (simulation.status().step < 12) {
-        const Columns before = simulation.flow().columns;
+        const Particles before = simulation.flow().particles;
         REQUIRE_NOTHROW(simulation.advance(1e9));
         fastest = std::max(fastest, simulation.status().max_speed_on_map);
-        if (simulation.status().step == 1) most = farthest(before, simulation.flow().columns);
+        if (simulation.status().step == 1) most = farthest(before, simulation.flow().particles);
     }
     CHECK(most > 0.1 * scene.scheme.cfl);  // it did begin to fall
     CHECK(most <= 2.0 * scene.scheme.cfl);
@@ -62,7 +62,7 @@ TEST_CASE("A step that is shortened ends at its time, and observing the run chan
     other.frame();
     run_to(other, 0.5);
     CHECK(one.status().time == 0.5);
-    CHECK(one.flow().columns.x == other.flow().columns.x);
+    CHECK(one.flow().particles.x == other.flow().particles.x);
     CHECK(one.status().step == other.status().step);
 }
 
@@ -81,7 +81,7 @@ TEST_CASE("Friction drives no point of flip: what it takes of the nodes' velocit
     double fastest = 0.0;
     while (simulation.status().step < 20) {
         simulation.advance(1e9);
-        for (const double v : simulation.flow().columns.vx) fastest = std::max(fastest, std::abs(v));
+        for (const double v : simulation.flow().particles.vx) fastest = std::max(fastest, std::abs(v));
     }
     CHECK(fastest <= 31.5);  // 30, and a twentieth for the pressure of the block's 0.2 m
     const Status now = simulation.frame().status;
@@ -107,13 +107,13 @@ TEST_CASE("Linear shapes, PIC and FLIP take no more viscosity in a step than is 
         fill(scene, [](double x, double y) { return std::hypot(x - 12, y - 12) < 6 ? 0.3 : 0.0; });
         DepthAveraged simulation(scene);
         while (simulation.status().step < 20) simulation.advance(1e9);
-        return simulation.flow().columns.x;
+        return simulation.flow().particles.x;
     };
     CHECK(run(0.5) == run(0.25));
     CHECK(run(0.25) != run(0.1));
 }
 
-TEST_CASE("Viscosity gives lone columns of any transfer no energy", "[conserve][steps]") {
+TEST_CASE("Viscosity gives lone particles of any transfer no energy", "[conserve][steps]") {
     const auto transfer = GENERATE(Transfer::pic, Transfer::flip, Transfer::tpic, Transfer::apic);
     const double at = GENERATE(0.0, 0.2, 0.5);
     CAPTURE(static_cast<int>(transfer), at);
@@ -169,7 +169,7 @@ TEST_CASE("A stop by gravity and friction together lets no difference of flip's 
         for (Index p = 0; p < scene.particles.count(); ++p) scene.particles.vx[p] = uphill + (p % 2 == 0 ? own : -own);
         DepthAveraged simulation(scene);
         simulation.advance(1e9);
-        for (const double v : simulation.flow().columns.vx) fastest = std::max(fastest, std::abs(v) - uphill - own);
+        for (const double v : simulation.flow().particles.vx) fastest = std::max(fastest, std::abs(v) - uphill - own);
         uphill = 0.5 * simulation.status().dt * scene.gravity * slope / (1.0 + slope * slope);
     }
     REQUIRE(uphill > own);
@@ -192,7 +192,7 @@ TEST_CASE("Points of flip that lie on opposite walls stay mirrored", "[conserve]
     DepthAveraged simulation(scene);
     while (simulation.status().step < 7) {
         simulation.advance(1e9);
-        const Columns& c = simulation.flow().columns;
+        const Particles& c = simulation.flow().particles;
         int on_walls = 0;
         for (Index p = 0; p < c.count(); ++p)
             if (c.id[p] == 0 || c.id[p] == last) {

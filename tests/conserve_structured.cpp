@@ -46,7 +46,7 @@ TEST_CASE("A block that breaks conserves its mass, and its momentum is what it w
     CHECK(flow.momentum_residual().norm() < 1e-12 * given);
 }
 
-TEST_CASE("Columns that run off the grid are counted with what they carry", "[structured]") {
+TEST_CASE("Particles that run off the grid are counted with what they carry", "[structured]") {
     StructuredScene s = breaking(1e9);
     s.obstacles.clear();
     for (double& v : s.points.vy) v = -6.0;
@@ -69,8 +69,8 @@ TEST_CASE("Structured solids have the same bits for any number of threads", "[st
         for (int step = 0; step < 200; ++step) flow.advance(10.0);
         const StructuredPoints& q = flow.body().points;
         std::vector<double> bits = {flow.status().kinetic, flow.status().impulse.friction.x(), flow.status().damage};
-        for (const Array* column : {&q.x, &q.y, &q.vx, &q.xx, &q.damage})
-            bits.insert(bits.end(), column->begin(), column->end());
+        for (const Array* array : {&q.x, &q.y, &q.vx, &q.xx, &q.damage})
+            bits.insert(bits.end(), array->begin(), array->end());
         CHECK(flow.body().active.count() >= kTilesForThreads);
         if (count == 1) first = bits;
         CHECK(bits == first);
@@ -80,7 +80,7 @@ TEST_CASE("Structured solids have the same bits for any number of threads", "[st
     CHECK(damage > 0.0);
 }
 
-TEST_CASE("A column that spreads becomes thinner as its area grows, and stands on its own weight", "[structured]") {
+TEST_CASE("A particle that spreads becomes thinner as its area grows, and stands on its own weight", "[structured]") {
     StructuredScene s;
     s.grid = verify::grid_over({-3, -2}, {3, 2}, 0.1);
     s.ground = [](double, double) { return GroundGravity{0, 0, 2.0}; };
@@ -200,7 +200,7 @@ TEST_CASE("What a step costs compared with the depth-averaged flow's", "[.cost]"
     omp_set_num_threads(1);
     const auto cost = [](const char* what, double per, const verify::Measurement& m) {
         const double ns = 1e9 * m.wall_seconds / static_cast<double>(m.particles * m.steps);
-        fmt::print("{}: {:.0f} ns a column and step, {:.2f} of the flow's\n", what, ns, per > 0.0 ? ns / per : 1.0);
+        fmt::print("{}: {:.0f} ns a particle and step, {:.2f} of the flow's\n", what, ns, per > 0.0 ? ns / per : 1.0);
         return ns;
     };
     verify::Setup setup;

@@ -131,10 +131,10 @@ TEST_CASE("Friction on a block is Coulomb's along its way: mu g cos^2 down a slo
     CHECK(now.momentum[1] / now.mass == Approx(3.0 - mu * g * std::sqrt(cosine2) * now.dt).epsilon(1e-4));
 }
 
-TEST_CASE("Frames of structured columns have finite fields, of stress, damage and cohesion too", "[structured]") {
+TEST_CASE("Frames of structured particles have finite fields, of stress, damage and cohesion too", "[structured]") {
     const Scene scene = sliding(600.0);
     StructuredRun run(scene);
-    for (const double time : {0.15, 0.6, 0.75, 1.4}) {  // depth is shown wherever parts of columns lie
+    for (const double time : {0.15, 0.6, 0.75, 1.4}) {  // depth is shown wherever parts of particles lie
         go_to(run, time);
         double volume = 0.0;
         const Field depth = *run.frame().node("depth");
@@ -169,7 +169,7 @@ TEST_CASE("Frames of structured columns have finite fields, of stress, damage an
     CHECK(middle.depth > 0.0);
 }
 
-TEST_CASE("Speeds of structured columns are along the bed smoothed to the curvature's length", "[structured]") {
+TEST_CASE("Speeds of structured particles are along the bed smoothed to the curvature's length", "[structured]") {
     Scene scene =
         scene_on(81, 31, 0.5, [](double x, double) { return 20.0 - x / 3.0 + 0.1 * std::cos(constants::kPi * x); });
     scene.scheme.curvature_length = 1.5;  // 18 passes, each of which halves a wave of four cells
@@ -220,12 +220,13 @@ TEST_CASE("Grains follow a bend of the bed as the depth-averaged flow does: what
         const double fallen = first.potential - now.potential;
         return Ran{std::abs(fallen - now.kinetic) / fallen, now.momentum[0] / now.mass};
     };
-    const Ran columns = ran(Curvature::full, false), grains = ran(Curvature::full, true),
+    const Ran particles = ran(Curvature::full, false), grains = ran(Curvature::full, true),
               straight = ran(Curvature::none, true);
-    CAPTURE(columns.unaccounted, grains.unaccounted, straight.unaccounted, columns.speed, grains.speed, straight.speed);
+    CAPTURE(particles.unaccounted, grains.unaccounted, straight.unaccounted, particles.speed, grains.speed,
+            straight.speed);
     CHECK(grains.unaccounted < 0.01);    // six cells of grains along the way; the depth-averaged flow's is 0.006
     CHECK(straight.unaccounted > 0.05);  // what a bend that is not felt takes: a quarter
-    CHECK(grains.speed == Approx(columns.speed).epsilon(0.005));
+    CHECK(grains.speed == Approx(particles.speed).epsilon(0.005));
     // They press on the bend as well: with friction the same.
     CHECK(ran(Curvature::full, true, 0.2).speed == Approx(ran(Curvature::full, false, 0.2).speed).epsilon(0.005));
 }
@@ -258,11 +259,11 @@ TEST_CASE("Grains press on a bend of the bed as the depth-averaged flow does, an
         return of;
     };
     const bool wet = GENERATE(false, true);
-    const Shown columns = shown(false, false), grains = shown(true, wet);
-    CAPTURE(wet, columns.most, grains.most, columns.peaks, grains.peaks, columns.now, grains.now);
-    CHECK(grains.most == Approx(columns.most).epsilon(0.02));
-    CHECK(grains.peaks == Approx(columns.peaks).epsilon(0.02));
-    CHECK(grains.now == Approx(columns.now).epsilon(0.02));
+    const Shown particles = shown(false, false), grains = shown(true, wet);
+    CAPTURE(wet, particles.most, grains.most, particles.peaks, grains.peaks, particles.now, grains.now);
+    CHECK(grains.most == Approx(particles.most).epsilon(0.02));
+    CHECK(grains.peaks == Approx(particles.peaks).epsilon(0.02));
+    CHECK(grains.now == Approx(particles.now).epsilon(0.02));
 }
 
 // Its pressure was that of level ground: a third too little at the foot of such a slope.
@@ -283,14 +284,14 @@ TEST_CASE("Free water presses on a bend of the bed, and frames and peaks show it
             sums[0] += frame.node("pressure")->data[n], sums[1] += frame.node("peak_pressure")->data[n];
         return sums;
     };
-    const auto columns = shown(false, Curvature::full), water = shown(true, Curvature::full),
+    const auto particles = shown(false, Curvature::full), water = shown(true, Curvature::full),
                straight = shown(true, Curvature::none);
-    CAPTURE(columns[0], columns[1], water[0], water[1], straight[0], straight[1]);
+    CAPTURE(particles[0], particles[1], water[0], water[1], straight[0], straight[1]);
     // Two schemes of second order, on a sheet of six cells: as far apart as their speeds are in "Free water follows ...".
-    CHECK(water[0] == Approx(columns[0]).epsilon(0.05));
-    CHECK(water[1] == Approx(columns[1]).epsilon(0.15));  // of fronts, which both have to first order
-    CHECK(straight[0] < 0.6 * columns[0]);
-    CHECK(straight[1] < 0.6 * columns[1]);
+    CHECK(water[0] == Approx(particles[0]).epsilon(0.05));
+    CHECK(water[1] == Approx(particles[1]).epsilon(0.15));  // of fronts, which both have to first order
+    CHECK(straight[0] < 0.6 * particles[0]);
+    CHECK(straight[1] < 0.6 * particles[1]);
 }
 
 TEST_CASE("What grains lose by Rankine's earth pressure is recorded: their energy closes as that of hydrostatic ones",
@@ -356,13 +357,13 @@ TEST_CASE("Grains pay for a step in the bed as the depth-averaged flow does", "[
         go_to(*run, 2.5);
         return run->status().momentum[0] / run->status().mass;
     };
-    const double columns = speed(false), grains = speed(true);
-    CAPTURE(columns, grains);
-    CHECK(columns < std::sqrt(9.0 * 9.0 - 2.0 * 9.81 * 1.2));  // it pays for three quarters of the height at least
-    CHECK(grains == Approx(columns).epsilon(0.005));
+    const double particles = speed(false), grains = speed(true);
+    CAPTURE(particles, grains);
+    CHECK(particles < std::sqrt(9.0 * 9.0 - 2.0 * 9.81 * 1.2));  // it pays for three quarters of the height at least
+    CHECK(grains == Approx(particles).epsilon(0.005));
 }
 
-TEST_CASE("A saved run of structured columns goes on with the same bits", "[structured]") {
+TEST_CASE("A saved run of structured particles goes on with the same bits", "[structured]") {
     const Scene scene = sliding(600.0);
     StructuredRun whole(scene);
     go_to(whole, 0.7);
@@ -379,7 +380,7 @@ TEST_CASE("A saved run of structured columns goes on with the same bits", "[stru
     CHECK(whole.breakage().torn == resumed.breakage().torn);
 }
 
-TEST_CASE("Walls hold structured columns back, open sides and ground without data let them go", "[structured]") {
+TEST_CASE("Walls hold structured particles back, open sides and ground without data let them go", "[structured]") {
     Scene scene = sliding();
     scene.particles.vx.assign(scene.particles.x.size(), 0.0);
     scene.particles.vy.assign(scene.particles.x.size(), -12.0);
@@ -400,7 +401,7 @@ TEST_CASE("Walls hold structured columns back, open sides and ground without dat
     CHECK(left() == Approx(1.0).epsilon(1e-12));
 }
 
-TEST_CASE("Structured columns that leave carry out the energy of where they leave", "[structured]") {
+TEST_CASE("Structured particles that leave carry out the energy of where they leave", "[structured]") {
     Scene scene = sliding();
     for (double& z : scene.bed.values) z += 1000.0;
     scene.particles.vx.assign(scene.particles.x.size(), 0.0);
@@ -415,15 +416,15 @@ TEST_CASE("Structured columns that leave carry out the energy of where they leav
     go_to(run, scene.end);
     const Status last = run.frame().status;
     REQUIRE(last.mass == 0.0);
-    // The slope has 1 in 3, a column leaves within half a cell (0.25 m) of the node that it is recorded at: 0.083 m of
-    // some 1000, beside what the thousand metres make if they are forgotten.
+    // The slope has 1 in 3, a particle leaves within half a cell (0.25 m) of the node that it is recorded at: 0.083 m
+    // of some 1000, beside what the thousand metres make if they are forgotten.
     const double allowed = first.mass * scene.gravity * (0.25 / 3.0);
     CAPTURE(hole, first.potential, last.potential, first.kinetic, last.kinetic, last.dissipated, last.energy_left);
     CHECK(std::abs(budget(first, last).energy_residual) < allowed);
 }
 
-// boundary.holes = "wall" was advised, which structured columns do not have.
-TEST_CASE("What structured columns lose in a hole is a remark without walls", "[structured][holes]") {
+// boundary.holes = "wall" was advised, which structured particles do not have.
+TEST_CASE("What structured particles lose in a hole is a remark without walls", "[structured][holes]") {
     Scene scene = sliding();
     scene.particles.vx.assign(scene.particles.x.size(), 12.0);
     scene.bed_law = bed::None{};
@@ -509,7 +510,7 @@ Barrier wall_across(double from, double to) {
 }
 
 // One row of nodes was stopped in a wall of 0.8 cells between them, and none of what came; two rows let an eighth through.
-TEST_CASE("No wall is so thin that structured columns go through it", "[structured]") {
+TEST_CASE("No wall is so thin that structured particles go through it", "[structured]") {
     const double width = GENERATE(0.05, 0.4, 0.6, 1.1, 1.4), from = GENERATE(12.05, 12.3, 12.5);
     CAPTURE(width, from);
     for (const bool grains : {true, false}) {
@@ -530,8 +531,8 @@ TEST_CASE("No wall is so thin that structured columns go through it", "[structur
     }
 }
 
-// Where both met columns gathered in the seam, half as deep again.
-TEST_CASE("Of a wall in two pieces structured columns make what they make of one", "[structured]") {
+// Where both met particles gathered in the seam, half as deep again.
+TEST_CASE("Of a wall in two pieces structured particles make what they make of one", "[structured]") {
     const double seam = GENERATE(7.5, 7.3);
     const auto deepest = [&](bool two) {
         Scene scene = sliding();
@@ -555,7 +556,7 @@ TEST_CASE("Of a wall in two pieces structured columns make what they make of one
     CHECK(deepest(true) == Approx(deepest(false)).epsilon(1e-9));
 }
 
-TEST_CASE("A barrier below the ground stops no structured columns", "[structured]") {
+TEST_CASE("A barrier below the ground stops no structured particles", "[structured]") {
     Scene scene = sliding();
     StructuredRun free(scene);
     go_to(free, scene.end);
@@ -569,7 +570,7 @@ TEST_CASE("A barrier below the ground stops no structured columns", "[structured
     CHECK(run.remarks() == free.remarks());
 }
 
-TEST_CASE("A barrier that structured columns stand higher than is named, since its box holds all back",
+TEST_CASE("A barrier that structured particles stand higher than is named, since its box holds all back",
           "[structured]") {
     Scene scene = sliding();
     Barrier wall;
@@ -620,7 +621,7 @@ Scene wet_slide() {
 
 }  // namespace
 
-TEST_CASE("Gauges of structured columns have the bed, dry and with water, with material and without",
+TEST_CASE("Gauges of structured particles have the bed, dry and with water, with material and without",
           "[structured][mixture]") {
     const bool wet = GENERATE(false, true);
     const StructuredRun run(wet ? wet_slide() : sliding(600.0));
@@ -633,7 +634,7 @@ TEST_CASE("Gauges of structured columns have the bed, dry and with water, with m
 }
 
 // What had lost its confined water still weighed as the case's density says.
-TEST_CASE("Columns that break press on the ground with the water that is left to them: weight stays",
+TEST_CASE("Particles that break press on the ground with the water that is left to them: weight stays",
           "[structured][mixture]") {
     Scene scene = scene_on(81, 41, 0.5, [](double, double) { return 0.0; });
     scene.particles = {};
@@ -681,7 +682,7 @@ TEST_CASE("Velocities of grains and water together are by mass, in frames as in 
     CHECK(mixed > 5);
 }
 
-TEST_CASE("No step before an output is a crumb, with structured columns and with water", "[structured][mixture]") {
+TEST_CASE("No step before an output is a crumb, with structured particles and with water", "[structured][mixture]") {
     Scene scene = GENERATE(false, true) ? wet_slide() : sliding(600.0);
     if (!scene.water) scene.structure->share = 0.5;
     const std::unique_ptr<Simulation> run = make_simulation(scene);
@@ -698,7 +699,7 @@ TEST_CASE("No step before an output is a crumb, with structured columns and with
     CHECK(shortest > 0.4 * longest);  // half of a step, and a fifth for steps that grow
 }
 
-TEST_CASE("A run goes on while water flows, when the columns have left", "[structured][mixture]") {
+TEST_CASE("A run goes on while water flows, when the particles have left", "[structured][mixture]") {
     Scene scene = wet_slide();
     scene.particles.vx.assign(scene.particles.x.size(), 0.0);
     scene.particles.vy.assign(scene.particles.x.size(), -12.0);
@@ -721,7 +722,7 @@ TEST_CASE("A run with water conserves mass and momentum of both, and its water's
     const Scene scene = wet_slide();
     StructuredRun run(scene);
     const Status first = run.status();
-    const double released = 25 * 0.8 * 0.8 * 1900.0;  // the columns' part of the block
+    const double released = 25 * 0.8 * 0.8 * 1900.0;  // the particles' part of the block
     CHECK(first.mass > released);
     double worst = 0.0;
     while (run.status().time < scene.end) {
@@ -828,7 +829,7 @@ TEST_CASE("A saved run with water goes on with the same bits", "[structured][mix
     CHECK((whole.water()->status().ledger.sheared > 0.0) == viscous);
 }
 
-TEST_CASE("Columns next to ground without data stand on the ground that there is", "[structured]") {
+TEST_CASE("Particles next to ground without data stand on the ground that there is", "[structured]") {
     Scene scene = sliding();
     scene.bed = scene_on(81, 31, 0.5, [](double, double) { return 500.0; }).bed;
     scene.particles.vx.assign(scene.particles.x.size(), 0.0);
@@ -844,7 +845,7 @@ TEST_CASE("Columns next to ground without data stand on the ground that there is
     for (Index p = 0; p < elevation->count; ++p) CHECK(elevation->data[p] == Approx(500.0).epsilon(1e-15));
 }
 
-TEST_CASE("Frames of a wet run show water and columns on all of their tiles, and nothing elsewhere",
+TEST_CASE("Frames of a wet run show water and particles on all of their tiles, and nothing elsewhere",
           "[structured][mixture]") {
     Scene scene = wet_slide();
     scene.water->rain = {};

@@ -527,7 +527,7 @@ TEST_CASE("However viscous the water and however thin next to however deep, its 
     }
 }
 
-TEST_CASE("Slip along a gradient of the columns' share is sheared by eq. 30; only a bend moves water",
+TEST_CASE("Slip along a gradient of the particles' share is sheared by eq. 30; only a bend moves water",
           "[water][conserve]") {
     const double bend = -0.004, nu = 0.05, dt = 0.01, u = 0.7, v = 0.3;
     for (const int axis : {0, 1}) {
@@ -637,7 +637,7 @@ TEST_CASE("Momentum given to a film is known until the film stops", "[water][con
     const Index k = flow.body().grid.at(3, 4);
     lent.h[k] = 0.5 * lent.film, lent.qx[k] = 3.0 * lent.h[k];
     flow.take_changes({(4 / kTile + 1) * flow.body().grid.tiles_x() + 3 / kTile + 1});
-    CHECK(flow.status().ledger.columns.x() == Approx(1.5 * lent.film).epsilon(1e-9));
+    CHECK(flow.status().ledger.particles.x() == Approx(1.5 * lent.film).epsilon(1e-9));
     CHECK(flow.momentum_residual().norm() < 1e-12);
     flow.advance(1.0);
     CHECK(lent.qx[k] == 0.0);
@@ -673,13 +673,13 @@ TEST_CASE("What a step of water costs compared with the depth-averaged flow's", 
     verify::Setup setup;
     setup.cells = 160;
     const verify::Measurement flow = verify::find_problem("radial_dam")->run(setup);
-    const double column = 1e9 * flow.wall_seconds / static_cast<double>(flow.particles * flow.steps);
+    const double particle = 1e9 * flow.wall_seconds / static_cast<double>(flow.particles * flow.steps);
     const verify::Measurement water = verify::find_problem("water_thacker_r")->run(setup);
     const double cell = 1e9 * water.wall_seconds / static_cast<double>(water.particles * water.steps);
     fmt::print(
-        "depth-averaged flow: {:.0f} ns a column and step; free water: {:.0f} ns a wet cell and step, {:.2f} "
+        "depth-averaged flow: {:.0f} ns a particle and step; free water: {:.0f} ns a wet cell and step, {:.2f} "
         "of it\n",
-        column, cell, cell / column);
+        particle, cell, cell / particle);
     CHECK(cell > 0.0);
 }
 

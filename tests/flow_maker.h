@@ -1,8 +1,8 @@
 #pragma once
-// A depth-averaged state of uneven columns, for tests of the way into 3D and back.
+// A depth-averaged state of uneven particles, for tests of the way into 3D and back.
 #include <cmath>
 
-#include "convert/flow_columns.h"
+#include "convert/flow_particles.h"
 
 namespace flow_maker {
 
@@ -20,10 +20,10 @@ inline frana::Raster tilted_bed(frana::Index nodes, double cell) {
     return bed;
 }
 
-/// One column per pixel but for the outermost ones, depths from 0 to 7 m, velocities in all directions and rest.
-inline frana::FlowColumns uneven_flow(const frana::Raster& bed, double density, double gravity) {
+/// One particle per pixel but for the outermost ones, depths from 0 to 7 m, velocities in all directions and rest.
+inline frana::FlowParticles uneven_flow(const frana::Raster& bed, double density, double gravity) {
     const frana::GridGeometry& g = bed.geometry;
-    frana::FlowColumns c;
+    frana::FlowParticles c;
     for (frana::Index j = 1; j + 1 < g.ny; ++j)
         for (frana::Index i = 1; i + 1 < g.nx; ++i) {
             const double u = static_cast<double>(i), v = static_cast<double>(j);

@@ -12,7 +12,7 @@
 
 #include "observe/frame.h"
 
-/// Owns the columns of a frame. A cone-shaped hill with a flow of `count` particles on it at time `time`.
+/// Owns the arrays of a frame. A cone-shaped hill with a flow of `count` particles on it at time `time`.
 class FrameMaker {
 public:
     frana::Frame frame;
@@ -27,7 +27,7 @@ public:
     }
     FrameMaker(const FrameMaker&) = delete;
 
-    /// The numbers of a column, to be made awkward by a test.
+    /// The numbers of an array, to be made awkward by a test.
     std::vector<double>& particle_numbers(const std::string& name) { return numbers(frame.particles, name); }
     std::vector<double>& node_numbers(const std::string& name) { return numbers(frame.nodes, name); }
 

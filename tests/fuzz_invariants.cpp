@@ -11,7 +11,7 @@
 #include "shallow/depth_averaged.h"
 
 using namespace frana;
-using namespace frana::stress;
+using namespace frana::fuzz;
 
 namespace {
 
@@ -61,7 +61,7 @@ std::string broken_by(const Falsify& change) {
 
 }  // namespace
 
-TEST_CASE("A bed law that random scenes do not have gets the keys that it needs, within their ranges", "[stress]") {
+TEST_CASE("A bed law that random scenes do not have gets the keys that it needs, within their ranges", "[fuzz]") {
     for (const std::string& law : find_parameter("material.bed.law")->choices)
         for (std::uint64_t n = 0; n < 20; ++n) {
             Dice dice(7, n);
@@ -77,7 +77,7 @@ TEST_CASE("A bed law that random scenes do not have gets the keys that it needs,
         }
 }
 
-TEST_CASE("A seed draws the same cases again, another seed other ones", "[stress]") {
+TEST_CASE("A seed draws the same cases again, another seed other ones", "[fuzz]") {
     for (std::uint64_t n = 0; n < 50; ++n) {
         CHECK(same(draw(7, n), draw(7, n)));
         CHECK_FALSE(same(draw(7, n), draw(8, n)));
@@ -85,13 +85,13 @@ TEST_CASE("A seed draws the same cases again, another seed other ones", "[stress
     }
 }
 
-TEST_CASE("Drawn rasters hold what a float32 GeoTIFF holds", "[stress]") {
+TEST_CASE("Drawn rasters hold what a float32 GeoTIFF holds", "[fuzz]") {
     for (std::uint64_t n = 0; n < 100; ++n)
         for (const auto& [name, raster] : draw(3, n).rasters)
             for (const double value : raster.values) REQUIRE((std::isnan(value) || single(value) == value));
 }
 
-TEST_CASE("Every drawn case is one that the program takes", "[stress]") {
+TEST_CASE("Every drawn case is one that the program takes", "[fuzz]") {
     for (std::uint64_t n = 0; n < 150; ++n) {
         CAPTURE(n, toml_of(draw(5, n)));
         REQUIRE_NOTHROW(scene_of(draw(5, n)));
@@ -100,13 +100,13 @@ TEST_CASE("Every drawn case is one that the program takes", "[stress]") {
 }
 
 // The fit divided nothing by nothing once all that it could change had changed.
-TEST_CASE("Masses fitted to a lake of few points at their limits are numbers", "[stress][lake]") {
+TEST_CASE("Masses fitted to a lake of few points at their limits are numbers", "[fuzz][lake]") {
     const DepthAveraged run(scene_of(draw(20261134, 3209)));
     CHECK(std::isfinite(run.status().mass));
     CHECK(run.status().mass > 0.0);
 }
 
-TEST_CASE("A sound run breaks no invariant", "[stress]") {
+TEST_CASE("A sound run breaks no invariant", "[fuzz]") {
     const Verdict verdict = examine(mound());
     REQUIRE_FALSE(verdict.broken);
     CHECK(verdict.steps == 12);
@@ -121,7 +121,7 @@ TEST_CASE("A sound run breaks no invariant", "[stress]") {
     }
 }
 
-TEST_CASE("A state holds the nodes that points touch, and none that they have left", "[stress]") {
+TEST_CASE("A state holds the nodes that points touch, and none that they have left", "[fuzz]") {
     Draft draft = mound();
     Raster& depth = draft.rasters["depth.tif"];
     std::fill(depth.values.begin(), depth.values.end(), Raster::nodata);
@@ -136,7 +136,7 @@ TEST_CASE("A state holds the nodes that points touch, and none that they have le
     for (const NodeState& node : state.nodes) CHECK(simulation.flow().is_in_reach(node.i, node.j));
 }
 
-TEST_CASE("A column hundreds of cells high on a bent bed falls no faster than gravity has it", "[stress]") {
+TEST_CASE("A column hundreds of cells high on a bent bed falls no faster than gravity has it", "[fuzz]") {
     // Smallest of those found; the bed bends by more than its slope within a hundredth of the column's height.
     Draft draft = mound();
     draft.keys.erase("material.bed.law"), draft.keys.erase("material.bed.mu");
@@ -152,9 +152,9 @@ TEST_CASE("A column hundreds of cells high on a bent bed falls no faster than gr
     CHECK(verdict.worst.count("speed") == 1);
 }
 
-// Two columns whose support just reaches a row of nodes: those have 1e-31 kg, which stress drove to 1e12 m/s. The bend
-// of the bed there took that for the columns' speed.
-TEST_CASE("A node's last bit of mass, which stress throws, does not feel a bend by its speed", "[stress]") {
+// Two particles whose support just reaches a row of nodes: those have 1e-31 kg, which stress drove to 1e12 m/s. The
+// bend of the bed there took that for the particles' speed.
+TEST_CASE("A node's last bit of mass, which stress throws, does not feel a bend by its speed", "[fuzz]") {
     Draft draft;
     draft.model = Model::mixture;
     draft.keys = {{"material.density", "1984.8201334798123"},
@@ -178,7 +178,7 @@ TEST_CASE("A node's last bit of mass, which stress throws, does not feel a bend 
     CHECK(verdict.worst.count("momentum") == 1);
 }
 
-TEST_CASE("Scenes that once broke an invariant break none", "[stress]") {
+TEST_CASE("Scenes that once broke an invariant break none", "[fuzz]") {
     struct Past {
         std::uint64_t seed, n;
         const char* key;
@@ -237,7 +237,7 @@ TEST_CASE("Scenes that once broke an invariant break none", "[stress]") {
     }
 }
 
-TEST_CASE("Mirror images that part by growing round-off are told from those that the code parts", "[stress]") {
+TEST_CASE("Mirror images that part by growing round-off are told from those that the code parts", "[fuzz]") {
     const Draft streams = draw(20261, 622);
     const Verdict grown = examine(streams);
     CHECK_FALSE(grown.broken);
@@ -253,14 +253,14 @@ TEST_CASE("Mirror images that part by growing round-off are told from those that
     CHECK_FALSE(planted.parted);
 }
 
-TEST_CASE("Where only round-off moves, mirror images may differ by round-off and by no more", "[stress]") {
+TEST_CASE("Where only round-off moves, mirror images may differ by round-off and by no more", "[fuzz]") {
     const Draft film = draw(8080, 1473);
     CHECK_FALSE(examine(film).broken);
     // Its waves run at some 0.05 m/s, its round-off is below 1e-14 m/s.
     CHECK(broken_by(film, [](Snapshot& s) { s.nodes[2].vx += 1e-11; }) == "symmetry");
 }
 
-TEST_CASE("What runs uphill on steep ground is still held to a speed and an energy", "[stress]") {
+TEST_CASE("What runs uphill on steep ground is still held to a speed and an energy", "[fuzz]") {
     Draft heap = draw(8080, 2468);
     for (auto key = heap.keys.begin(); key != heap.keys.end();)  // loose ground may become steeper, and allows more
         key = key->first.rfind("erodible.", 0) == 0 ? heap.keys.erase(key) : std::next(key);
@@ -269,7 +269,7 @@ TEST_CASE("What runs uphill on steep ground is still held to a speed and an ener
     CHECK(broken_by(heap, [](Snapshot& s) { s.now.potential += 3.0 * s.now.kinetic; }) == "energy");
 }
 
-TEST_CASE("A falsified state is seen, by the invariant that it breaks", "[stress]") {
+TEST_CASE("A falsified state is seen, by the invariant that it breaks", "[fuzz]") {
     CHECK(broken_by([](Snapshot&) {}) == "");
     CHECK(broken_by([](Snapshot& s) { s.points.change[3] = kNaN; }) == "finite");
     CHECK(broken_by([](Snapshot& s) { s.now.dissipated = kNaN; }) == "finite");
@@ -286,7 +286,7 @@ TEST_CASE("A falsified state is seen, by the invariant that it breaks", "[stress
     CHECK(broken_by([](Snapshot& s) { s.max_speed = 13.0; }) == "speed");
 }
 
-TEST_CASE("Energy is judged with linear shapes only where a scene is claimed to be resolved", "[stress]") {
+TEST_CASE("Energy is judged with linear shapes only where a scene is claimed to be resolved", "[fuzz]") {
     Draft draft = mound();
     draft.keys["scheme.shape"] = "\"linear\"";
     const auto heat = [](Snapshot& s) { s.now.kinetic += 1e6; };
@@ -296,7 +296,7 @@ TEST_CASE("Energy is judged with linear shapes only where a scene is claimed to 
     CHECK(broken_by(draft, heat) == "energy");
 }
 
-TEST_CASE("A speed beyond the line is allowed by what velocity changes across a cell, and no more", "[stress]") {
+TEST_CASE("A speed beyond the line is allowed by what velocity changes across a cell, and no more", "[fuzz]") {
     // The mound's line is 2 sqrt(g h) and a fall of h, 9.4 m/s at 1.5 m; its own gradients stay below a quarter of that.
     const auto fast = [](double speed, double change) {
         return broken_by([=](Snapshot& s) { s.max_speed = speed, s.points.change[3] = change; });
@@ -307,13 +307,13 @@ TEST_CASE("A speed beyond the line is allowed by what velocity changes across a 
     CHECK(fast(20.0, 1e3) == "speed");
 }
 
-TEST_CASE("A point of a resting pile that moves by one bit is seen", "[stress]") {
+TEST_CASE("A point of a resting pile that moves by one bit is seen", "[fuzz]") {
     const auto nudge = [](Snapshot& s) { s.points.x[0] = std::nextafter(s.points.x[0], 1e9); };
     CHECK(broken_by(resting_mound(), nudge) == "rest");
     CHECK(broken_by(resting_mound(), [](Snapshot& s) { s.points.vy[1] = 1e-300; }) == "rest");
 }
 
-TEST_CASE("A mirror image that is none is seen", "[stress]") {
+TEST_CASE("A mirror image that is none is seen", "[fuzz]") {
     for (const Mirror way : {Mirror::x, Mirror::y, Mirror::diagonal}) {
         Draft draft = mound();
         draft.claims.mirror = way;
@@ -323,7 +323,7 @@ TEST_CASE("A mirror image that is none is seen", "[stress]") {
     }
 }
 
-TEST_CASE("A run that fails in the solver is a finding, a case that is none is refused", "[stress]") {
+TEST_CASE("A run that fails in the solver is a finding, a case that is none is refused", "[fuzz]") {
     Draft draft = mound();
     Scene scene = scene_of(draft);
     scene.scheme.cfl = 50.0;  // far beyond what a case may ask for
@@ -335,7 +335,7 @@ TEST_CASE("A run that fails in the solver is a finding, a case that is none is r
     CHECK(examine(draft).refused);
 }
 
-TEST_CASE("A failing case is shrunk to what makes it fail", "[stress]") {
+TEST_CASE("A failing case is shrunk to what makes it fail", "[fuzz]") {
     // Planted: pits of more than 5 m count as a failure, where there is material, at step 2.
     Draft draft = mound();
     draft.steps = 40;
@@ -366,7 +366,7 @@ TEST_CASE("A failing case is shrunk to what makes it fail", "[stress]") {
     CHECK(judge(shrunk.draft).broken);
 }
 
-TEST_CASE("A pile that is shrunk keeps what it rests by, an image its symmetry", "[stress]") {
+TEST_CASE("A pile that is shrunk keeps what it rests by, an image its symmetry", "[fuzz]") {
     const auto always = [](const Draft&) {
         Verdict verdict;
         verdict.broken = Violation{"planted", 1.0, 0, 0.0, ""};
@@ -389,7 +389,7 @@ TEST_CASE("A pile that is shrunk keeps what it rests by, an image its symmetry",
         for (Index i = 0; i < dem.geometry.nx; ++i) REQUIRE(dem.at(i, j) == dem.at(j, i));
 }
 
-TEST_CASE("A campaign says what it ran, the same again", "[stress]") {
+TEST_CASE("A campaign says what it ran, the same again", "[fuzz]") {
     Plan plan;
     plan.models = {Model::depth_averaged};
     plan.seed = 11;
@@ -405,7 +405,7 @@ TEST_CASE("A campaign says what it ran, the same again", "[stress]") {
     CHECK(json_of(campaign).find("\"seed\": 11, \"first\": 0, \"scenes\": 6") != std::string::npos);
 }
 
-TEST_CASE("The map of stable steps rises until something breaks", "[stress]") {
+TEST_CASE("The map of stable steps rises until something breaks", "[fuzz]") {
     const CflRow row = cfl_row({"default", Shape::quadratic, Transfer::tpic, 1}, 25);
     CAPTURE(row.largest, row.first_broken);
     CHECK(row.largest >= 0.5);  // the default scheme.cfl
@@ -414,7 +414,7 @@ TEST_CASE("The map of stable steps rises until something breaks", "[stress]") {
     CHECK(table.find("quadratic tpic") != std::string::npos);
 }
 
-TEST_CASE("The scenes of that map all have an energy law", "[stress]") {
+TEST_CASE("The scenes of that map all have an energy law", "[fuzz]") {
     for (const SuiteScene& entry : cfl_suite({})) {
         const DepthAveraged simulation(entry.scene);
         CAPTURE(entry.name);

@@ -5,7 +5,7 @@
 #include "checks/fuzz/trial.h"
 
 using namespace frana;
-using namespace frana::stress;
+using namespace frana::fuzz;
 
 namespace {
 
@@ -24,7 +24,7 @@ void wall_across(Dice& dice, Draft& draft) {
 
 }  // namespace
 
-TEST_CASE("Walls in ground that changes: no invariant breaks in random scenes", "[stress][barrier]") {
+TEST_CASE("Walls in ground that changes: no invariant breaks in random scenes", "[fuzz][barrier]") {
     Index walled = 0;
     Dice dice(20261128);
     for (std::uint64_t n = 0; n < 180; ++n) {

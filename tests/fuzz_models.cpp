@@ -9,7 +9,7 @@
 #include "checks/fuzz/draw.h"
 
 using namespace frana;
-using namespace frana::stress;
+using namespace frana::fuzz;
 
 namespace {
 
@@ -29,7 +29,7 @@ Draft mound(Model model) {
                   {"time.end", "1000.0"},
                   {"boundary.sides", "\"wall\""}};
     draft.steps = 14;
-    if (model == Model::solid_flow || model == Model::staged) {
+    if (model == Model::mpm3d || model == Model::staged) {
         draft.keys["stage#0.model"] = "\"solid_flow\"";
         draft.keys["stage#0.cell"] = "1.0";
     }
@@ -73,7 +73,7 @@ std::string broken_by(Model model, const Falsify& change) {
 
 }  // namespace
 
-TEST_CASE("Every model draws its scenes again, and others from another seed or number", "[stress]") {
+TEST_CASE("Every model draws its scenes again, and others from another seed or number", "[fuzz]") {
     for (const Model model : all_models())
         for (std::uint64_t n = 0; n < 30; ++n) {
             CAPTURE(word_of(model), n);
@@ -85,13 +85,13 @@ TEST_CASE("Every model draws its scenes again, and others from another seed or n
     CHECK(same(draw(Model::depth_averaged, 7, 3), draw(7, 3)));
 }
 
-TEST_CASE("Scenes of every model are ones that the program takes, and what their model says", "[stress]") {
+TEST_CASE("Scenes of every model are ones that the program takes, and what their model says", "[fuzz]") {
     for (const Model model : all_models())
         for (std::uint64_t n = 0; n < 60; ++n) {
             const Draft draft = draw(model, 5, n);
             CAPTURE(word_of(model), n, toml_of(draft));
             const Scene scene = scene_of(draft);
-            const bool stages = model == Model::solid_flow || model == Model::staged, wet = model == Model::water;
+            const bool stages = model == Model::mpm3d || model == Model::staged, wet = model == Model::water;
             CHECK(scene.solid.has_value() == stages);
             CHECK(scene.water.has_value() == (wet || model == Model::mixture || model == Model::flood));
             CHECK(scene.structure.has_value() == (wet || model == Model::mixture || model == Model::structured));
@@ -100,7 +100,7 @@ TEST_CASE("Scenes of every model are ones that the program takes, and what their
         }
 }
 
-TEST_CASE("Scenes are on level and on rough ground, some with threads and resumption to compare", "[stress]") {
+TEST_CASE("Scenes are on level and on rough ground, some with threads and resumption to compare", "[fuzz]") {
     for (const Model model : all_models()) {
         Index threads = 0, resumes = 0, steep = 0;
         for (std::uint64_t n = 0; n < 200; ++n) {
@@ -120,7 +120,7 @@ TEST_CASE("Scenes are on level and on rough ground, some with threads and resump
     }
 }
 
-TEST_CASE("Where several models are drawn each comes as often as the others", "[stress]") {
+TEST_CASE("Where several models are drawn each comes as often as the others", "[fuzz]") {
     std::map<Model, Index> counts;
     for (std::uint64_t n = 0; n < 6000; ++n) counts[model_of(all_models(), 1, n)] += 1;
     REQUIRE(counts.size() == all_models().size());
@@ -129,7 +129,7 @@ TEST_CASE("Where several models are drawn each comes as often as the others", "[
     for (std::uint64_t n = 0; n < 20; ++n) CHECK(model_of({Model::water}, 1, n) == Model::water);
 }
 
-TEST_CASE("Models are named on the command line", "[stress]") {
+TEST_CASE("Models are named on the command line", "[fuzz]") {
     CHECK(models_of("all").size() == 7);
     CHECK(models_of("water,staged") == std::vector<Model>{Model::water, Model::staged});
     CHECK_THROWS_WITH(models_of("water,ice"),
@@ -137,7 +137,7 @@ TEST_CASE("Models are named on the command line", "[stress]") {
     CHECK_THROWS_AS(models_of(""), UserError);
 }
 
-TEST_CASE("A sound run of every model breaks nothing, and is checked for all that can break", "[stress]") {
+TEST_CASE("A sound run of every model breaks nothing, and is checked for all that can break", "[fuzz]") {
     for (const Model model : all_models()) {
         Draft draft = mound(model);
         draft.claims.threads = draft.claims.resumes = true;
@@ -145,16 +145,16 @@ TEST_CASE("A sound run of every model breaks nothing, and is checked for all tha
         CAPTURE(word_of(model), verdict.text, verdict.broken ? verdict.broken->text : "");
         REQUIRE_FALSE(verdict.refused);
         REQUIRE_FALSE(verdict.broken);
-        CHECK(verdict.steps >= 14);  // one of water may take several of the columns
+        CHECK(verdict.steps >= 14);  // one of water may take several of the particles
         for (const char* checked : {"finite", "positive", "mass", "momentum", "energy", "speed", "threads", "resume"}) {
             CAPTURE(checked);
             CHECK(verdict.worst.count(checked) == 1);
         }
-        CHECK(verdict.worst.count("head") == (model == Model::solid_flow || model == Model::staged ? 1 : 0));
+        CHECK(verdict.worst.count("head") == (model == Model::mpm3d || model == Model::staged ? 1 : 0));
     }
 }
 
-TEST_CASE("A falsified state of every model is seen, by the invariant that it breaks", "[stress]") {
+TEST_CASE("A falsified state of every model is seen, by the invariant that it breaks", "[fuzz]") {
     for (const Model model : all_models()) {
         CAPTURE(word_of(model));
         const auto broken = [&](const Falsify& change) { return broken_by(model, change); };
@@ -174,8 +174,8 @@ TEST_CASE("A falsified state of every model is seen, by the invariant that it br
     }
 }
 
-TEST_CASE("A 3D point that is too high, or too fast where it is, is seen", "[stress]") {
-    for (const Model model : {Model::solid_flow, Model::staged}) {
+TEST_CASE("A 3D point that is too high, or too fast where it is, is seen", "[fuzz]") {
+    for (const Model model : {Model::mpm3d, Model::staged}) {
         const auto first_in_3d = [](const Snapshot& s) {
             std::size_t p = 0;
             while (!s.points.in_3d[p]) ++p;
@@ -188,7 +188,7 @@ TEST_CASE("A 3D point that is too high, or too fast where it is, is seen", "[str
     }
 }
 
-TEST_CASE("Scenes of other models that once broke an invariant break none", "[stress]") {
+TEST_CASE("Scenes of other models that once broke an invariant break none", "[fuzz]") {
     struct Past {
         Model model;
         std::uint64_t seed, n;
@@ -202,11 +202,11 @@ TEST_CASE("Scenes of other models that once broke an invariant break none", "[st
         {Model::water, 2, 470, "water.viscosity", "0.19193959929416746"},
         {Model::water, 2, 1271, "water.mud_alpha", "0.04977025032683622"},
         {Model::mixture, 2, 362, "water.profile_factor", "3.0"},
-        // Affine transfers where streams of columns meet.
+        // Affine transfers where streams of particles meet.
         {Model::structured, 2, 97, "material.structure.young_modulus", "165676880.48915252"},
         // Points that began inside a barrier were pushed onto it.
-        {Model::solid_flow, 2, 156, "stage#0.transfer", "\"flip\""},
-        {Model::solid_flow, 2, 523, "barrier#0.height", "43.16820509186893"},
+        {Model::mpm3d, 2, 156, "stage#0.transfer", "\"flip\""},
+        {Model::mpm3d, 2, 523, "barrier#0.height", "43.16820509186893"},
         {Model::staged, 2, 400, "barrier#0.height", "36.71209067597749"},
         // A block that goes under a lake.
         {Model::water, 2, 623, "water.level", "270.26186061017535"},
@@ -223,7 +223,7 @@ TEST_CASE("Scenes of other models that once broke an invariant break none", "[st
     }
 }
 
-TEST_CASE("A campaign draws of the given models, and tells the mix", "[stress]") {
+TEST_CASE("A campaign draws of the given models, and tells the mix", "[fuzz]") {
     Plan plan;
     plan.models = {Model::structured, Model::water};
     plan.seed = 3, plan.scenes = 12, plan.seconds = 1e9, plan.most_shrunk = 0;

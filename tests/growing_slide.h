@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "catch.h"
-#include "coupling/growing_columns.h"
+#include "coupling/growing_particles.h"
 #include "fake_gis.h"
 
 namespace frana::test {

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "catch.h"
-#include "coupling/growing_columns.h"
+#include "coupling/growing_particles.h"
 #include "observe/budget.h"
 #include "scene/scene.h"
 
@@ -26,7 +26,7 @@ inline frana::Scene growing_slope(const frana::NodeBox& begin) {
 }
 
 /// Runs on to that time [s], with the mass checked in each step. Whether the part grew westward while more was to come.
-inline bool grows_before_all_is_in(frana::GrowingColumns& part, double end) {
+inline bool grows_before_all_is_in(frana::GrowingParticles& part, double end) {
     const frana::Status first = part.status();
     bool grew = false;
     while (part.status().time < end) {

@@ -144,10 +144,10 @@ Width width_of_first(const Pixels& picture, const Colour& colour, double apart) 
 }
 
 /// Two pieces of the material 1.5 m in size, 8 m from each other along the flow and 3 m above the floor.
-Figure3d two_pieces(bool columns) {
+Figure3d two_pieces(bool particles) {
     Figure3d figure;
     figure.bed = floor_of_10();
-    for (const double x : {16.0, 24.0}) figure.moment.material.push_back({{x, 10, 13}, 1.5, 10.0, 10.0, columns});
+    for (const double x : {16.0, 24.0}) figure.moment.material.push_back({{x, 10, 13}, 1.5, 10.0, 10.0, particles});
     figure.moment.typical_size = 1.5;
     figure.view = {{12, 5, 28, 15}, 10.0, 0.0, {1, 0}, {20, 10}};
     figure.look = ViewAngles3d{0.0, 0.3};  // to the north: both are as far away
@@ -164,7 +164,7 @@ TEST_CASE("The first pressure of a barrier is a mean since the output before, no
     const auto writer = make_barrier_writer(folder.path());
     Frame frame;
     frame.status.time = 1.0;
-    writer->observe(frame);  // columns alone: no barrier has faces
+    writer->observe(frame);  // particles alone: no barrier has faces
     frame.number = 1, frame.status.time = 1.5;
     frame.faces = wall();
     writer->observe(frame);
@@ -225,7 +225,7 @@ TEST_CASE("In ParaView a barrier stands from the ground to its top, however far 
     frame.status.time = 1.5;
     frame.faces = wall();
     frame.grid = slope.geometry;
-    Raster with_wall = slope;  // as columns see it
+    Raster with_wall = slope;  // as particles see it
     for (double& z : with_wall.values) z += 1.0;
     frame.nodes = {{"elevation", "m", 1, with_wall.values.data(), with_wall.geometry.size()}};
     make_barrier_writer(folder.path(), {{std::nullopt, 1.5}}, slope)->observe(frame);
@@ -347,34 +347,34 @@ TEST_CASE("The section shows the points near its plane at their heights, and no 
     CHECK(like(drawn(render_section, figure_of(flow({24, 13, 12.0}))), fast) == 0);
 }
 
-TEST_CASE("A point is as large as a cube of its volume, a column as wide as its volume requires", "[space]") {
+TEST_CASE("A point is as large as a cube of its volume, a particle as wide as its volume requires", "[space]") {
     LoadedParticles particles;
     particles.count = 4;
-    particles.columns["position"].assign(12, 0.0);
-    particles.columns["speed"].assign(4, 1.0);
-    particles.columns["volume"] = {0.125, 18.0, 0.125, 0.064};
-    particles.columns["depth"] = {0.0, 2.0, 0.0, 0.0};
-    particles.columns["model"] = {1.0, 0.0, 1.0, 1.0};
+    particles.arrays["position"].assign(12, 0.0);
+    particles.arrays["speed"].assign(4, 1.0);
+    particles.arrays["volume"] = {0.125, 18.0, 0.125, 0.064};
+    particles.arrays["depth"] = {0.0, 2.0, 0.0, 0.0};
+    particles.arrays["model"] = {1.0, 0.0, 1.0, 1.0};
     const Moment3d moment = moment_3d(particles, {});
     const double sizes[] = {0.5, 3.0, 0.5, 0.4};
     REQUIRE(moment.material.size() == 4);
     for (std::size_t k = 0; k < 4; ++k) CHECK(moment.material[k].size == Approx(sizes[k]));
-    CHECK(moment.typical_size == Approx(0.5));  // the points' median, whatever the columns are
+    CHECK(moment.typical_size == Approx(0.5));  // the points' median, whatever the particles are
 }
 
-TEST_CASE("Points and columns are drawn in the size that they have", "[space]") {
+TEST_CASE("Points and particles are drawn in the size that they have", "[space]") {
     if (cannot_draw()) return;
     const Colour fast = colour_at(Colormap::speed, 1.0);
-    for (const bool columns : {false, true}) {
-        INFO((columns ? "columns" : "points"));
-        const Figure3d figure = two_pieces(columns);
+    for (const bool particles : {false, true}) {
+        INFO((particles ? "particles" : "points"));
+        const Figure3d figure = two_pieces(particles);
         // Balls are 0.62 of the size in radius. Their rims are lit less, which may cost a pixel more at each side.
         const Width ball = width_of_first(drawn(render_3d, figure), fast, 8.0);
         CHECK(std::abs(ball.wide - 2.0 * 0.62 * 1.5) < 4.0 * ball.pixel);
         CHECK(ball.pixel < 0.04);
-        // In the section a column is as wide as it is, a point an octagon whose corners lie on the ball.
+        // In the section a particle is as wide as it is, a point an octagon whose corners lie on the ball.
         const Width cut = width_of_first(drawn(render_section, figure), fast, 8.0);
-        CHECK(std::abs(cut.wide - (columns ? 1.5 : 1.5 * std::cos(constants::kPi / 8))) < 2.0 * cut.pixel);
+        CHECK(std::abs(cut.wide - (particles ? 1.5 : 1.5 * std::cos(constants::kPi / 8))) < 2.0 * cut.pixel);
         CHECK(cut.pixel < 0.04);
     }
 }

@@ -299,8 +299,8 @@ TEST_CASE("Figures of a finished run show its points and its mesh when both, and
     REQUIRE(meshes.size() == 1);
     CHECK(meshes[0]->points.front().isApprox(Vec3(20, -1, 5.67)));
     const LoadedParticles last = read_particles(run.out, -1);
-    const std::vector<double>& model = last.columns.at("model");
-    CHECK(std::count(model.begin(), model.end(), 0.0) == last.count);  // columns again
+    const std::vector<double>& model = last.arrays.at("model");
+    CHECK(std::count(model.begin(), model.end(), 0.0) == last.count);  // particles again
     std::filesystem::remove(folder.path() / "block.obj");
     FiguresOptions again;
     again.run_dir = run.out;

@@ -94,7 +94,7 @@ TEST_CASE("Barriers keep the attributes of their features, with what hit them", 
         CHECK_FALSE(known(*houses[1], name));  // never reached
     for (const std::size_t n : {0, 2}) {
         CAPTURE(n);
-        CHECK_FALSE(known(*houses[n], "peak_force_N"));  // columns take a barrier for ground
+        CHECK_FALSE(known(*houses[n], "peak_force_N"));  // particles take a barrier for ground
         CHECK(houses[n]->GetFieldAsDouble("peak_depth_m") > 0.1);
         CHECK(houses[n]->GetFieldAsDouble("peak_dynamic_pressure_Pa") > 1500.0);  // 1 m/s
     }
@@ -103,7 +103,7 @@ TEST_CASE("Barriers keep the attributes of their features, with what hit them", 
     CHECK_FALSE(known(*houses[2], "persons"));
 }
 
-TEST_CASE("The report has the time of contact of houses that columns reach, and a table has all",
+TEST_CASE("The report has the time of contact of houses that particles reach, and a table has all",
           "[barriers][results]") {
     const Village village;
     REQUIRE(call_frana(village.path(), "run case.toml --out run --quiet").code == 0);
@@ -116,14 +116,15 @@ TEST_CASE("The report has the time of contact of houses that columns reach, and 
         Contains("barrier,first_contact [s],peak_force [N],peak_force_mean_over [s],peak_dynamic_pressure [Pa]"));
     CHECK_THAT(table, Contains("house_2,,,,,,,0,64,,,,,,,,\n"));
     CHECK(std::count(table.begin(), table.end(), '\n') == 4);
-    // What columns do not tell is null in the record, and not a number that could be one.
+    // What particles do not tell is null in the record, and not a number that could be one.
     const Json record = Json::parse(text_of(village.path() / "run" / "run.json"));
     for (const Json& barrier : record["barriers"])
         for (const char* key : {"peak_force", "peak_force_time", "raw_peak_force", "impulse"})
             CHECK(barrier[key].is_null());
     CHECK(record["barriers"][1]["first_contact"].is_null());
     CHECK(record["barriers"][1]["run_up"].is_null());
-    // No column stands higher above the ground beside a wall than the flow is deep there, two cells up the slope at most.
+    // No particle stands higher above the ground beside a wall than the flow is deep there, two cells up the slope at
+    // most.
     const double run_up = record["barriers"][0]["run_up"].get<double>(), foot = 200.0 - 3.0 * 75.0 / 5.0;
     CHECK(run_up > foot);
     CHECK(run_up < foot + 2.0 * 3.0 + record["results"]["max_depth"].get<double>());
@@ -192,7 +193,7 @@ TEST_CASE("A house that the flow reaches, but never deep enough for a contact, h
     CHECK(no_picture());
 }
 
-TEST_CASE("A house with a contact that no column came near has the surface there as its run-up",
+TEST_CASE("A house with a contact that no particle came near has the surface there as its run-up",
           "[barriers][results]") {
     BarrierHit hit, shallow, wall;
     hit.area = shallow.area = 64.0;
@@ -205,7 +206,7 @@ TEST_CASE("A house with a contact that no column came near has the surface there
         return summaries[0];
     };
     CHECK(noted(hit, unknown).run_up == 101.5);
-    CHECK(noted(hit, run_up).run_up == run_up);  // what columns tell is more exact
+    CHECK(noted(hit, run_up).run_up == run_up);  // what particles tell is more exact
     CHECK(noted(hit, unknown).first_contact == 3.0);
     CHECK(std::isnan(noted(shallow, run_up).run_up));
     CHECK(noted(wall, run_up).run_up == run_up);  // of its contact nothing is known

@@ -159,7 +159,7 @@ TEST_CASE("A run without VTK files, and one that has not ended, give the same po
         "go further\n");
 }
 
-TEST_CASE("The nearest frame is taken, and said; a window takes its columns only", "[convert]") {
+TEST_CASE("The nearest frame is taken, and said; a window takes its particles only", "[convert]") {
     const Outcome near = finished_run().frana("convert out --time 1.3 --spacing 0.5 --out near.csv");
     CHECK(near.code == 0);
     CHECK_THAT(near.out, Contains("no frame at 1.3 s; the nearest, at 1.5 s, is taken\n") && Contains("mass [kg]"));
@@ -207,9 +207,10 @@ TEST_CASE("What cannot be converted is refused with one sentence, and no file ap
           "--window 500,500,600,600: lies outside the terrain; expected a part of 0,0,150,100; give map coordinates of "
           "the "
           "run\n");
-    CHECK(refused("out --window 100,0,150,20" + rest).err ==
-          "--window 100,0,150,20: holds no material at 1 s; expected columns of the flow in it; give another window or "
-          "time\n");
+    CHECK(
+        refused("out --window 100,0,150,20" + rest).err ==
+        "--window 100,0,150,20: holds no material at 1 s; expected particles of the flow in it; give another window or "
+        "time\n");
     CHECK(refused("out --window 40,0,30,20" + rest).err ==
           "--window 40,0,30,20: is empty; expected xmin,ymin,xmax,ymax with xmin < xmax and ymin < ymax; give the "
           "corners "

@@ -99,10 +99,10 @@ TEST_CASE("A frame with a number that is none is refused by name", "[convert]") 
     CHECK_FALSE(fs::exists(finished_run().folder() / "n.csv"));
 }
 
-TEST_CASE("Two windows that share an edge hold each column once", "[convert]") {
+TEST_CASE("Two windows that share an edge hold each particle once", "[convert]") {
     const Numbers all = hdf5_numbers(convert("all.h5", "--time 0 --spacing 9"), "column");
     const Numbers position = hdf5_numbers(finished_run().folder() / "all.h5", "position");
-    const double edge = position[0];  // of a column, so that it lies on the edge
+    const double edge = position[0];  // of a particle, so that it lies on the edge
     const auto held = [&](const std::string& window) {
         return hdf5_numbers(convert("part.h5", "--time 0 --spacing 9 --window " + window), "column").size();
     };

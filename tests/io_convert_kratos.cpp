@@ -13,14 +13,14 @@ namespace {
 
 SolidPoints some_points(Layers layers) {
     Raster bed = tilted_bed(8, 2.0);
-    FlowColumns columns = uneven_flow(bed, 1300.0, 9.81);
-    for (double& x : columns.x) x -= bed.geometry.x0;  // so that volumes are not lost in the digits of 5e6 m
-    for (double& y : columns.y) y -= bed.geometry.y0;
-    columns.depth[3] = 0.0;  // a column without depth has to have a volume all the same
+    FlowParticles particles = uneven_flow(bed, 1300.0, 9.81);
+    for (double& x : particles.x) x -= bed.geometry.x0;  // so that volumes are not lost in the digits of 5e6 m
+    for (double& y : particles.y) y -= bed.geometry.y0;
+    particles.depth[3] = 0.0;  // a particle without depth has to have a volume all the same
     ConversionChoice choice;
     choice.spacing = 0.5;
     choice.layers = layers;
-    return columns_to_points(columns, choice);
+    return particles_to_points(particles, choice);
 }
 
 }  // namespace
@@ -49,9 +49,9 @@ TEST_CASE("Kratos would make the very same points: place, volume, mass, velocity
         }
         CHECK(volume_error < 1e-11);  // differences of elevations of 900 m over slices of 0.5 m
         CHECK(place_error < 1e-12);   // round-off of 900 m
-        // Four nodes a level: slices of a column share them only where they touch.
-        const std::size_t columns = points.first.size() - 1;
-        const std::size_t levels = layers == Layers::centres ? points.count() + columns : 2 * points.count();
+        // Four nodes a level: slices of a particle share them only where they touch.
+        const std::size_t particles = points.first.size() - 1;
+        const std::size_t levels = layers == Layers::centres ? points.count() + particles : 2 * points.count();
         CHECK(body.nodes.size() == 4 * levels);
 
         const auto json = nlohmann::json::parse(text_of(folder.path() / "ParticleMaterials.json"));

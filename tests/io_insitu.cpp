@@ -87,7 +87,7 @@ TEST_CASE("a contour of a field that the run does not have says so and leaves no
     CHECK(fs::is_empty(folder.path()));
 }
 
-TEST_CASE("a threshold keeps the particles whose values lie in the interval, with all columns", "[insitu]") {
+TEST_CASE("a threshold keeps the particles whose values lie in the interval, with all arrays", "[insitu]") {
     const FreshFolder folder;
     const FrameMaker made(3, 1.5, 500, FrameMaker::utm(20, 15));
     const auto work = make_particle_threshold(folder.path(), "some", "velocity_y", {-4.0, -1.5});

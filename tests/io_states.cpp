@@ -159,16 +159,16 @@ void add_arrays(vtkDataSetAttributes* attributes, std::set<std::string>& names) 
 /// Every array of the files in a run that has everything.
 std::set<std::string> arrays_written(const fs::path& run) {
     std::set<std::string> names;
-    for (const auto& column : read_frame(run, -1).nodes) names.insert(column.first);
-    for (const auto& column : read_particles(run, -1).columns) names.insert(column.first);
-    for (const auto& column : read_particles(impact_run(), -1).columns) names.insert(column.first);
-    for (const auto& column : read_frame(structure_run(), -1).nodes) names.insert(column.first);
-    for (const auto& column : read_frame(phases_run(), -1).nodes) names.insert(column.first);
-    for (const auto& column : read_maps(ensemble_folder()).nodes) names.insert(column.first);
+    for (const auto& array : read_frame(run, -1).nodes) names.insert(array.first);
+    for (const auto& array : read_particles(run, -1).arrays) names.insert(array.first);
+    for (const auto& array : read_particles(impact_run(), -1).arrays) names.insert(array.first);
+    for (const auto& array : read_frame(structure_run(), -1).nodes) names.insert(array.first);
+    for (const auto& array : read_frame(phases_run(), -1).nodes) names.insert(array.first);
+    for (const auto& array : read_maps(ensemble_folder()).nodes) names.insert(array.first);
     const auto barriers = polydata(impact_run() / "barriers/barriers_000020.vtp");
     add_arrays(barriers->GetCellData(), names);
     add_arrays(barriers->GetPointData(), names);
-    for (const auto& column : read_terrain(run).nodes) names.insert(column.first);
+    for (const auto& array : read_terrain(run).nodes) names.insert(array.first);
     for (const char* file : {"survey_areas.vtp", "survey_outlines.vtp", "profiles/profiles_000000.vtp"}) {
         const auto data = polydata(run / file);
         add_arrays(data->GetPointData(), names);
@@ -301,7 +301,7 @@ TEST_CASE("the states of an impact have its time, the points' size and a camera 
     const LoadedParticles then = read_particles(impact_run(), frame - frames.begin());
     std::vector<double> volumes;
     for (std::size_t k = 0; k < static_cast<std::size_t>(then.count); ++k)
-        if (then.columns.at("model")[k] == 1.0) volumes.push_back(then.columns.at("volume")[k]);
+        if (then.arrays.at("model")[k] == 1.0) volumes.push_back(then.arrays.at("volume")[k]);
     std::sort(volumes.begin(), volumes.end());
     REQUIRE(volumes.size() > 100);
     CHECK(look["point_radius"].get<double>() ==
@@ -380,7 +380,7 @@ TEST_CASE("a run with 3D points draws them, and frana figures does it again", "[
     options.run_dir = copy;
     options.time = 1.0;
     REQUIRE(figures_command(options) == 0);
-    CHECK_FALSE(fs::exists(copy / "figures" / "view_points_t1s.png"));  // columns only
+    CHECK_FALSE(fs::exists(copy / "figures" / "view_points_t1s.png"));  // particles only
     options.time = 2.3;
     REQUIRE(figures_command(options) == 0);
     if (!no_renderer_reason().empty()) return;

@@ -127,9 +127,9 @@ TEST_CASE("read_frame gives back what the writers were shown", "[io][vtk]") {
     CHECK(std::count(some.names.begin(), some.names.end(), "not there") == 0);
     const LoadedParticles cloud = read_particles(run.path(), 3);
     CHECK(cloud.count == 300);
-    CHECK(cloud.columns.at("position") == maker.particle_numbers("position"));
-    CHECK(cloud.columns.at("mass") == maker.particle_numbers("mass"));
-    CHECK(cloud.columns.at("id") == maker.particle_numbers("id"));
+    CHECK(cloud.arrays.at("position") == maker.particle_numbers("position"));
+    CHECK(cloud.arrays.at("mass") == maker.particle_numbers("mass"));
+    CHECK(cloud.arrays.at("id") == maker.particle_numbers("id"));
     CHECK(cloud.units.at("mass") == "kg");
     CHECK(read_particles(run.path(), 0).count == 0);
 }

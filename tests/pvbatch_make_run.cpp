@@ -11,7 +11,7 @@
 
 #include "frame_maker.h"
 #include "io/xdmf_writer.h"
-#include "observe/file_columns.h"
+#include "observe/file_arrays.h"
 #include "vtk_io/reader.h"
 #include "vtk_io/writers.h"
 

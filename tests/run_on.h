@@ -23,7 +23,7 @@ struct Place {
 };
 
 inline std::vector<std::pair<std::int64_t, Place>> places(const DepthAveraged& simulation) {
-    const Columns& c = simulation.flow().columns;
+    const Particles& c = simulation.flow().particles;
     std::vector<std::pair<std::int64_t, Place>> all;
     for (Index p = 0; p < c.count(); ++p) all.push_back({c.id[p], {c.x[p], c.y[p], c.mass[p]}});
     std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });

@@ -24,7 +24,7 @@ struct Traps : ListenerBase {
         bool excused = false;
 #endif
         for (const char* tag : {"[bench]", "[conserve]", "[insitu]", "[lake]", "[nan]", "[nodes]", "[precision]",
-                                "[resume]", "[rest]", "[solid]", "[solver]", "[speed]", "[stress]", "[verify]"})
+                                "[resume]", "[rest]", "[solid]", "[solver]", "[speed]", "[fuzz]", "[verify]"})
             excused = excused || tags.find(tag) != std::string::npos;
         feclearexcept(FE_ALL_EXCEPT);
         feenableexcept(FE_OVERFLOW);

@@ -108,10 +108,10 @@ TEST_CASE("bench finds the same bits for one, two and four threads, and other bi
     CHECK_FALSE(bench::same_bits(other));
     bench::Blob blob;
     blob.particles = 1000;
-    Columns columns = DepthAveraged(bench::blob_scene(blob)).flow().columns;
-    const std::uint64_t before = bench::hash_of(columns);
-    columns.r2y[500] = std::nextafter(columns.r2y[500], 1.0);
-    CHECK(bench::hash_of(columns) != before);
+    Particles particles = DepthAveraged(bench::blob_scene(blob)).flow().particles;
+    const std::uint64_t before = bench::hash_of(particles);
+    particles.r2y[500] = std::nextafter(particles.r2y[500], 1.0);
+    CHECK(bench::hash_of(particles) != before);
 }
 
 TEST_CASE("Every phase that the solver times has a traffic model, and phases make up the step", "[bench]") {
@@ -143,7 +143,7 @@ TEST_CASE("Every phase that the solver times has a traffic model, and phases mak
     CHECK(cost.phases.back().cpu_ns < 0.2 * sum);  // a phase that nobody records would hide there
 }
 
-TEST_CASE("Memory per point counts at least the columns and the copy of one in the sort", "[bench]") {
+TEST_CASE("Memory per point counts at least the arrays and the copy of one in the sort", "[bench]") {
     const bench::Cost& cost = bench::find(report(), "depth_averaged", 4000, 1)->cost;
     CHECK(cost.bytes_per_particle >= 16 * 8);
 }

@@ -1,4 +1,4 @@
-// Many buildings as barriers: what a case may have, and what columns do among them.
+// Many buildings as barriers: what a case may have, and what particles do among them.
 #include <algorithm>
 #include <cmath>
 
@@ -6,7 +6,7 @@
 #include "barrier_ground.h"
 #include "catch.h"
 #include "coupling/staged_run.h"
-#include "coupling/walled_columns.h"
+#include "coupling/walled_particles.h"
 #include "observe/memory_archive.h"
 #include "scene/build_scene.h"
 #include "scene/joined_barriers.h"
@@ -64,7 +64,7 @@ Scene stream(const std::vector<Barrier>& houses) {
 
 }  // namespace
 
-TEST_CASE("Columns alone may have hundreds of barriers, 3D points may not", "[scene][barriers]") {
+TEST_CASE("Particles alone may have hundreds of barriers, 3D points may not", "[scene][barriers]") {
     FakeGis gis = slope_gis();
     gis.polygons["houses.gpkg"] = village(64, 12, 17);
     CHECK(scene_of(with_houses("height = 6\neach = true\n"), gis).barriers.size() == 64);
@@ -164,7 +164,7 @@ TEST_CASE("Barriers that overlap, or touch along a side, are named where 3D poin
     CHECK_FALSE(says(scene_of(with_houses(keys, stage), gis), "overlap"));
     gis.polygons["houses.gpkg"].parts[2] = rectangle(1035, 2015, 1045, 2025).parts[0];
     CHECK(says(scene_of(with_houses(keys, stage), gis), "house_2 and house_3: found barriers that overlap"));
-    CHECK_FALSE(says(scene_of(with_houses(keys), gis), "overlap"));  // to columns they are ground
+    CHECK_FALSE(says(scene_of(with_houses(keys), gis), "overlap"));  // to particles they are ground
 }
 
 TEST_CASE("Houses thinner than two cells are remarked upon", "[scene][barriers]") {
@@ -196,8 +196,8 @@ TEST_CASE("Houses that the flow does not meet change no bit of it, nor of what i
     std::vector<Barrier> many = one;
     for (int n = 0; n < 40; ++n)
         many.push_back(house(190.0 + 10.0 * (n % 4), 4.0 + 11.0 * (n / 4), 4.0));  // beyond its reach
-    WalledColumns a(stream(one)), b(stream(many));
-    for (WalledColumns* run : {&a, &b}) run_to(*run, 5.0);
+    WalledParticles a(stream(one)), b(stream(many));
+    for (WalledParticles* run : {&a, &b}) run_to(*run, 5.0);
     CHECK(a.status().kinetic == b.status().kinetic);
     CHECK(a.loads()->barriers[0].run_up == b.loads()->barriers[0].run_up);
     CHECK(a.loads()->barriers[0].run_up > a.loads()->barriers[0].about.z());  // its foot on the flat
@@ -206,9 +206,9 @@ TEST_CASE("Houses that the flow does not meet change no bit of it, nor of what i
 }
 
 TEST_CASE("What a release places on a barrier is told", "[barriers]") {
-    CHECK(WalledColumns(stream({house(80, 56, 8)})).remarks().empty());
-    // 8 x 8 m of the slab, 2 m deep; its columns stand half a metre apart and more.
-    const std::vector<std::string> told = WalledColumns(stream({house(80, 36, 8), house(30, 56, 8)})).remarks();
+    CHECK(WalledParticles(stream({house(80, 56, 8)})).remarks().empty());
+    // 8 x 8 m of the slab, 2 m deep; its particles stand half a metre apart and more.
+    const std::vector<std::string> told = WalledParticles(stream({house(80, 36, 8), house(30, 56, 8)})).remarks();
     REQUIRE(told.size() == 1);
     CHECK(told.front() ==
           "barriers: found 128 m3 of releases on top of barriers; expected none, since it falls from there; move the "
@@ -228,7 +228,7 @@ TEST_CASE("What an inflow lets in on top of a barrier is told", "[barriers]") {
     const std::string torrent =
         "inflow torrent: found 40 m3 of it that enter on top of barriers by time.end; expected none, since it "
         "falls from there; move it off their outlines, or cut them out of its area";
-    CHECK(WalledColumns(scene).remarks() == std::vector<std::string>{torrent});
+    CHECK(WalledParticles(scene).remarks() == std::vector<std::string>{torrent});
     Inflow area;
     area.name = "spring";
     area.patches = {{{84, 60}, 0.25}, {{100, 60}, 0.75}};
@@ -249,14 +249,14 @@ TEST_CASE("What an inflow lets in on top of a barrier is told", "[barriers]") {
     scene.inflows.front().line = {{100, 36}, {100, 76}};
     scene.inflows.pop_back();
     scene.solid.reset();
-    CHECK(WalledColumns(scene).remarks().empty());
+    CHECK(WalledParticles(scene).remarks().empty());
 }
 
 TEST_CASE("The roof of a neighbour is no run-up", "[barriers]") {
     // The second stands beside the first and is 6 m higher up the slope: what comes over its roof passes the first within two
     // cells, as high as ground there.
-    WalledColumns run(stream({house(90, 56, 8), house(84, 66, 4)})), alone(stream({house(90, 56, 8)}));
-    for (WalledColumns* one : {&run, &alone}) run_to(*one, 5.0);
+    WalledParticles run(stream({house(90, 56, 8), house(84, 66, 4)})), alone(stream({house(90, 56, 8)}));
+    for (WalledParticles* one : {&run, &alone}) run_to(*one, 5.0);
     const auto& loads = run.loads()->barriers;
     REQUIRE(loads[1].overtopped > 0.0);
     CHECK(loads[0].run_up < loads[1].run_up - 1.0);
@@ -267,13 +267,13 @@ TEST_CASE("Two houses of a symmetric row are met alike, and resume to the last b
     std::vector<Barrier> row{house(80, 36, 8), house(80, 76, 8)};  // middles 20 m off the axis to both sides
     for (int n = 0; n < 30; ++n) row.push_back(house(190.0 + 10.0 * (n % 3), 4.0 + 11.0 * (n / 3), 4.0));
     const Scene scene = stream(row);
-    WalledColumns run(scene);
+    WalledParticles run(scene);
     run_to(run, 3.0);
     MemoryArchive kept;
     run.serialize(kept);
-    WalledColumns resumed(scene, Start::resumed);
+    WalledParticles resumed(scene, Start::resumed);
     resumed.serialize(kept.rewind());
-    for (WalledColumns* one : {&run, &resumed}) run_to(*one, 6.0);
+    for (WalledParticles* one : {&run, &resumed}) run_to(*one, 6.0);
     const auto& loads = run.loads()->barriers;
     CHECK(loads[0].run_up > loads[0].about.z() + 0.1);
     // Sums of nodes run from south to north: mirror images differ by round-off, which steep fronts amplify.

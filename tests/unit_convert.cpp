@@ -1,4 +1,4 @@
-// From depth-averaged columns to 3D points: places, shares, velocities, stresses, and what is conserved.
+// From depth-averaged particles to 3D points: places, shares, velocities, stresses, and what is conserved.
 #include "base/error.h"
 #include "catch.h"
 #include "convert/conservation.h"
@@ -13,9 +13,9 @@ namespace {
 constexpr VelocityProfile kProfiles[] = {VelocityProfile::plug, VelocityProfile::linear, VelocityProfile::parabolic,
                                          VelocityProfile::bagnold};
 
-/// One column: 3 m deep over a bed at 10 m, 6 kg, 3e-3 m3, (4, 2) m/s, slope (0.5, -0.25), 30 Pa at the bed.
-FlowColumns one_column(double depth = 3.0) {
-    FlowColumns c;
+/// One particle: 3 m deep over a bed at 10 m, 6 kg, 3e-3 m3, (4, 2) m/s, slope (0.5, -0.25), 30 Pa at the bed.
+FlowParticles one_particle(double depth = 3.0) {
+    FlowParticles c;
     c.x = {1.0}, c.y = {2.0}, c.bed = {10.0}, c.depth = {depth};
     c.slope_x = {0.5}, c.slope_y = {-0.25};
     c.vx = {4.0}, c.vy = {2.0};
@@ -47,7 +47,7 @@ double factor_error(VelocityProfile profile, Layers layers, Index count) {
 
 }  // namespace
 
-TEST_CASE("A column has as many layers as spacings fit, at least one, also where decimal numbers have no binary form",
+TEST_CASE("A particle has as many layers as spacings fit, at least one, also where decimal numbers have no binary form",
           "[convert]") {
     CHECK(layer_count(0.0, 0.5) == 1);
     CHECK(layer_count(0.49, 0.5) == 1);
@@ -60,19 +60,19 @@ TEST_CASE("A column has as many layers as spacings fit, at least one, also where
 
 TEST_CASE("Points stand in the middle of equal slices, or from bed to surface; a lone one in the middle", "[convert]") {
     ConversionChoice choice;
-    const SolidPoints middle = columns_to_points(one_column(), choice);
+    const SolidPoints middle = particles_to_points(one_particle(), choice);
     CHECK(elevations(middle) == std::vector<double>{10.5, 11.5, 12.5});
     CHECK(middle.position[0] == 1.0);
     CHECK(middle.position[1] == 2.0);
     CHECK(middle.height == std::vector<double>{1.0, 1.0, 1.0});
-    CHECK(middle.column == std::vector<double>{17.0, 17.0, 17.0});
+    CHECK(middle.particle == std::vector<double>{17.0, 17.0, 17.0});
     choice.layers = Layers::end_points;
-    CHECK(elevations(columns_to_points(one_column(), choice)) == std::vector<double>{10.0, 11.5, 13.0});
-    CHECK(elevations(columns_to_points(one_column(0.6), choice)) == std::vector<double>{10.3});  // not 0 / 0
+    CHECK(elevations(particles_to_points(one_particle(), choice)) == std::vector<double>{10.0, 11.5, 13.0});
+    CHECK(elevations(particles_to_points(one_particle(0.6), choice)) == std::vector<double>{10.3});  // not 0 / 0
 }
 
 TEST_CASE("Mass and volume are shared evenly, pressure is linear, stress is minus it and the rheology's", "[convert]") {
-    const SolidPoints points = columns_to_points(one_column(), {});
+    const SolidPoints points = particles_to_points(one_particle(), {});
     CHECK(apart(points.mass, {2.0, 2.0, 2.0}) < 1e-15);
     CHECK(apart(points.volume, {1e-3, 1e-3, 1e-3}) < 1e-18);
     CHECK(apart(points.pressure, {25.0, 15.0, 5.0}) < 1e-14);
@@ -84,11 +84,11 @@ TEST_CASE("Mass and volume are shared evenly, pressure is linear, stress is minu
 TEST_CASE("Velocity follows the profile and, unless told otherwise, the bed", "[convert]") {
     ConversionChoice choice;
     choice.profile = VelocityProfile::linear;
-    const SolidPoints along = columns_to_points(one_column(), choice);
+    const SolidPoints along = particles_to_points(one_particle(), choice);
     // 2 s = 1/3, 1, 5/3; w = 0.5 * 4 - 0.25 * 2 = 1.5 times that
     CHECK(apart(along.velocity, {4 / 3.0, 2 / 3.0, 0.5, 4, 2, 1.5, 20 / 3.0, 10 / 3.0, 2.5}) < 1e-14);
     choice.vertical = Vertical::zero;
-    const SolidPoints level = columns_to_points(one_column(), choice);
+    const SolidPoints level = particles_to_points(one_particle(), choice);
     CHECK(apart(level.velocity, {4 / 3.0, 2 / 3.0, 0, 4, 2, 0, 20 / 3.0, 10 / 3.0, 0}) < 1e-14);
 }
 
@@ -127,50 +127,50 @@ TEST_CASE("The layers' energy factor goes to the exact one: second order in cent
               Approx(4.0 / 3.0 - 1.0 / (3.0 * static_cast<double>(count * count))).epsilon(1e-14));
 }
 
-TEST_CASE("Mass, volume and horizontal momentum are conserved in total and per column, whatever is chosen",
+TEST_CASE("Mass, volume and horizontal momentum are conserved in total and per particle, whatever is chosen",
           "[convert]") {
     const Raster bed = tilted_bed(30, 2.0);
-    const FlowColumns columns = uneven_flow(bed, 1300.0, 9.81);
+    const FlowParticles particles = uneven_flow(bed, 1300.0, 9.81);
     for (const VelocityProfile profile : kProfiles)
         for (const Layers layers : {Layers::centres, Layers::end_points})
             for (const double spacing : {5.0, 0.7, 0.01}) {
                 const ConversionChoice choice{spacing, layers, Vertical::along_bed, profile};
-                const SolidPoints points = columns_to_points(columns, choice);
-                CHECK(static_cast<double>(points.count()) == forecast_points(columns, spacing));
-                const Conservation c = conservation_of(columns, points, choice);
+                const SolidPoints points = particles_to_points(particles, choice);
+                CHECK(static_cast<double>(points.count()) == forecast_points(particles, spacing));
+                const Conservation c = conservation_of(particles, points, choice);
                 REQUIRE(c.kept.size() == 4);
                 for (const Kept& kept : c.kept) {
                     INFO(kept.name << " spacing " << spacing << " profile " << static_cast<int>(profile));
-                    CHECK(kept.columns != 0.0);
+                    CHECK(kept.particles != 0.0);
                     CHECK(kept.relative_error <= 1e-12);  // round-off of a sum over all points
-                    CHECK(kept.worst_column <= 1e-12);
+                    CHECK(kept.worst_particle <= 1e-12);
                 }
                 CHECK(c.outside == 0.0);
-                CHECK(c.columns == columns.count());
+                CHECK(c.particles == particles.count());
                 CHECK(c.points == points.count());
             }
 }
 
 TEST_CASE("The table of conservation sees what is lost", "[convert]") {
-    const FlowColumns columns = one_column();
-    SolidPoints points = columns_to_points(columns, {});
+    const FlowParticles particles = one_particle();
+    SolidPoints points = particles_to_points(particles, {});
     points.mass[1] *= 1.01;             // 0.02 of 6 kg
     points.position[3 * 2 + 2] = 13.1;  // above the free surface
-    const Conservation c = conservation_of(columns, points, {});
+    const Conservation c = conservation_of(particles, points, {});
     CHECK(c.kept[0].relative_error == Approx(0.02 / 6.0));
-    CHECK(c.kept[0].worst_column == Approx(0.02 / 6.0));
+    CHECK(c.kept[0].worst_particle == Approx(0.02 / 6.0));
     CHECK(c.kept[1].relative_error < 1e-15);
-    CHECK(c.kept[2].worst_column == Approx(0.02 / 6.0 * 4.0 / std::hypot(4.0, 2.0)));
+    CHECK(c.kept[2].worst_particle == Approx(0.02 / 6.0 * 4.0 / std::hypot(4.0, 2.0)));
     CHECK(c.outside == Approx(1.0 / 3.0));
     CHECK_THAT(conservation_text(c), Catch::Contains("mass [kg]") && Catch::Contains("3.33e-03"));
 }
 
 TEST_CASE("The kinetic energy of the converted flow is that of the profile", "[convert]") {
-    const FlowColumns columns = one_column(100.0);
+    const FlowParticles particles = one_particle(100.0);
     for (const VelocityProfile profile : kProfiles) {
         const ConversionChoice choice{0.1, Layers::centres, Vertical::along_bed, profile};
-        const Conservation c = conservation_of(columns, columns_to_points(columns, choice), choice);
-        CHECK(c.kinetic_columns == Approx(0.5 * 6.0 * 20.0).epsilon(1e-14));
+        const Conservation c = conservation_of(particles, particles_to_points(particles, choice), choice);
+        CHECK(c.kinetic_particles == Approx(0.5 * 6.0 * 20.0).epsilon(1e-14));
         CHECK(c.energy_factor == Approx(c.exact_factor).epsilon(2e-6));  // 1000 layers, order 2: about 1 / M^2
         CHECK(c.kinetic_vertical == Approx(c.kinetic_points * 1.5 * 1.5 / 20.0).epsilon(1e-13));
     }
@@ -193,26 +193,27 @@ TEST_CASE("A spacing that is no distance is refused with a sentence", "[convert]
     for (const double spacing : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
         ConversionChoice choice;
         choice.spacing = spacing;
-        CHECK_THROWS_WITH(columns_to_points(one_column(), choice),
+        CHECK_THROWS_WITH(particles_to_points(one_particle(), choice),
                           Catch::Contains("--spacing: found") && Catch::Contains("above 0"));
     }
 }
 
-TEST_CASE("The paper's error measures are the same from columns as from the points they become", "[convert]") {
-    const FlowColumns columns = uneven_flow(tilted_bed(12, 2.0), 1000.0, 9.81);
+TEST_CASE("The paper's error measures are the same from particles as from the points they become", "[convert]") {
+    const FlowParticles particles = uneven_flow(tilted_bed(12, 2.0), 1000.0, 9.81);
     ExactTotals exact;
-    for (std::size_t p = 0; p < columns.count(); ++p) {
-        exact.mass += columns.mass[p];
-        exact.momentum += columns.mass[p] * columns.vx[p];
+    for (std::size_t p = 0; p < particles.count(); ++p) {
+        exact.mass += particles.mass[p];
+        exact.momentum += particles.mass[p] * particles.vx[p];
     }
     ConversionChoice choice;
     choice.spacing = 0.4;
-    const SolidPoints points = columns_to_points(columns, choice);
-    const auto column = [&](Index k) {
+    const SolidPoints points = particles_to_points(particles, choice);
+    const auto particle = [&](Index k) {
         const auto p = static_cast<std::size_t>(k);
-        return ErrorColumn{columns.depth[p], columns.mass[p], columns.volume[p], columns.mass[p] * columns.vx[p]};
+        return ErrorParticle{particles.depth[p], particles.mass[p], particles.volume[p],
+                             particles.mass[p] * particles.vx[p]};
     };
-    const ConversionErrors before = conversion_errors(static_cast<Index>(columns.count()), column, 0.4, exact);
+    const ConversionErrors before = conversion_errors(static_cast<Index>(particles.count()), particle, 0.4, exact);
     const ConversionErrors after = conversion_errors(points, exact);
     CHECK(before.points == static_cast<double>(points.count()));
     CHECK(after.points == before.points);
@@ -221,8 +222,8 @@ TEST_CASE("The paper's error measures are the same from columns as from the poin
 }
 
 TEST_CASE("The paper's error measure is the root of a mean over the volume", "[convert]") {
-    // Two columns of 2 and 1 layers: points of 3, 3 and 9 kg, 1, 1 and 4 m3; 15 kg over three points are 5 kg each.
-    const ErrorColumn two[] = {{2.5, 6.0, 2.0, 12.0}, {1.0, 9.0, 4.0, 0.0}};
+    // Two particles of 2 and 1 layers: points of 3, 3 and 9 kg, 1, 1 and 4 m3; 15 kg over three points are 5 kg each.
+    const ErrorParticle two[] = {{2.5, 6.0, 2.0, 12.0}, {1.0, 9.0, 4.0, 0.0}};
     const ConversionErrors errors = conversion_errors(2, [&](Index p) { return two[p]; }, 1.0, {15.0, 12.0});
     CHECK(errors.points == 3.0);
     CHECK(errors.mass == Approx(std::sqrt((2 * 4.0 + 4 * 16.0) / 6.0)).epsilon(1e-14));

@@ -231,7 +231,7 @@ TEST_CASE("The surface of flow and bed does not move when mass changes sides", "
     scene.erodible->momentum = 1.0;  // points are not set back: what is looked at is the exchange alone
     Flow flow(scene);
     Erosion erosion(scene, flow);
-    Columns& c = flow.columns;
+    Particles& c = flow.particles;
     const Seeds& seeds = scene.particles;
     c.resize(seeds.count());
     for (Index p = 0; p < seeds.count(); ++p) {
@@ -269,7 +269,7 @@ TEST_CASE("What ends a run early has changed nothing two steps before", "[erosio
     std::vector<Status> steps;
     std::vector<Array> x, mass;
     const auto note = [](const DepthAveraged& run, std::vector<Array>& xs, std::vector<Array>& masses) {
-        xs.push_back(run.flow().columns.x), masses.push_back(run.flow().columns.mass);
+        xs.push_back(run.flow().particles.x), masses.push_back(run.flow().particles.mass);
     };
     for (int n = 0; n < 30; ++n) {
         whole.advance(1e3);
@@ -282,8 +282,8 @@ TEST_CASE("What ends a run early has changed nothing two steps before", "[erosio
         DepthAveraged cut(scene);
         for (std::size_t step = 0; step <= n; ++step) cut.advance(steps[n].time + 1.02 * steps[n].dt);
         REQUIRE(cut.status().time == steps[n].time);
-        CHECK((cut.flow().columns.x == x[n]));
-        CHECK((cut.flow().columns.mass == mass[n]));
+        CHECK((cut.flow().particles.x == x[n]));
+        CHECK((cut.flow().particles.mass == mass[n]));
     }
 }
 
@@ -332,7 +332,7 @@ TEST_CASE("No point gathers what lies on its way: grown ones spread over as many
     double fullest = 0.0;  // cells that a grown point's mass would fill at the depth around it
     while (simulation.status().time < 60.0) {
         simulation.advance(60.0);
-        const Columns& c = simulation.flow().columns;
+        const Particles& c = simulation.flow().particles;
         for (Index p = 0; p < c.count(); ++p)
             // At margins the depth around a point says little.
             if (c.mass[p] > 2.0 * largest * scene.density && c.depth[p] > 0.5)
@@ -397,7 +397,7 @@ TEST_CASE("Erosion laws give what their papers' numbers say", "[erosion]") {
     CHECK(erosion::Shear{}.rate(s) == 0.0);
     s.eroded = 0.0, s.stress = 900.0;
     CHECK(erosion::Shear{}.rate(s) == 0.0);
-    // A strip as wide as the column, over a layer of 0.3 m.
+    // A strip as wide as the particle, over a layer of 0.3 m.
     s.left = 0.3, s.edge = 2.5;
     CHECK(erosion::Front{}.rate(s) == Approx(0.3 * 5.0 / 2.5));
     s.left = 0.0;

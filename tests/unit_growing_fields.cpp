@@ -68,7 +68,7 @@ Scene on_whole(const Edit& edit) {
     return scene;
 }
 
-void grow_once(GrowingColumns& run, const std::vector<Simulation*>& others = {}) {
+void grow_once(GrowingParticles& run, const std::vector<Simulation*>& others = {}) {
     const NodeBox begin = run.held();
     while (run.held() == begin) {
         run.advance(1e9);
@@ -124,21 +124,21 @@ public:
 TEST_CASE("Fields of a part that grows: the same bits whatever lies beyond, and after a resume", "[terrain][erosion]") {
     for (const Named& field : kAll) {
         INFO(field.name);
-        GrowingColumns large(with(slide_on_large(), field.edit)), cut(with(slide_on_cut(), field.edit));
+        GrowingParticles large(with(slide_on_large(), field.edit)), cut(with(slide_on_cut(), field.edit));
         grow_once(large, {&cut});
         require_same(large, cut);
         const auto moved = [&] { return large.status().bed.eroded + large.status().bed.deposited > 0.0; };
         CHECK(moved() == field.before);
         MemoryArchive archive;
         large.serialize(archive);
-        GrowingColumns again(with(slide_on_large(), field.edit), Start::resumed);
+        GrowingParticles again(with(slide_on_large(), field.edit), Start::resumed);
         again.serialize(archive.rewind());
         const double time = large.status().time + 8.0;
-        for (GrowingColumns* one : {&large, &cut, &again}) run_to(*one, time);
-        CHECK(moved() == (large.columns().erosion() != nullptr));
+        for (GrowingParticles* one : {&large, &cut, &again}) run_to(*one, time);
+        CHECK(moved() == (large.particles().erosion() != nullptr));
         require_same(large, cut);
-        if (large.columns().erosion() != nullptr)
-            check_same(large.columns(), again.columns(), field.ledger);
+        if (large.particles().erosion() != nullptr)
+            check_same(large.particles(), again.particles(), field.ledger);
         else
             require_same(large, again);
     }
@@ -147,7 +147,7 @@ TEST_CASE("Fields of a part that grows: the same bits whatever lies beyond, and 
 TEST_CASE("Fields of a part that grows are those of a run on all of the terrain, results too", "[terrain][erosion]") {
     for (const Named& field : kAll) {
         INFO(field.name);
-        GrowingColumns part(with(slide_on_large(), field.edit));
+        GrowingParticles part(with(slide_on_large(), field.edit));
         const Scene whole = on_whole(field.edit);
         DepthAveraged all(whole);
         const Status first = part.status(), first_of_all = all.status();
@@ -166,8 +166,8 @@ TEST_CASE("Fields of a part that grows are those of a run on all of the terrain,
         // What moved in the books when the part grew is nothing: both have the same residual of energy.
         CHECK(budget(first, now).energy_residual ==
               Approx(budget(first_of_all, of_all).energy_residual).margin(1e-9 * of_all.dissipated));
-        const Flow &here = part.columns().flow(), &there = all.flow();
-        const Erosion *bed = part.columns().erosion(), *of_whole = all.erosion();
+        const Flow &here = part.particles().flow(), &there = all.flow();
+        const Erosion *bed = part.particles().erosion(), *of_whole = all.erosion();
         double farthest = 0.0, ledger = 0.0, path = 0.0;
         const NodeBox held = part.held();
         for (Index j = 20; j < held.ny - 20; ++j)  // at the edges slopes are one-sided

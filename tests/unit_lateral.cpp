@@ -26,9 +26,9 @@ TEST_CASE("The lateral drag at a node is its faces', and takes momentum from one
     Scene scene = scene_on(41, 41, cell, [](double, double) { return 0.0; });
     scene.scheme.lateral_drag = drag;
     Flow flow(scene);
-    flow.columns.resize(1);
-    flow.columns.x[0] = flow.columns.y[0] = 20.0;
-    TileSorter().sort(flow.columns, flow.grid, {}, flow.active);
+    flow.particles.resize(1);
+    flow.particles.x[0] = flow.particles.y[0] = 20.0;
+    TileSorter().sort(flow.particles, flow.grid, {}, flow.active);
     reach_all(flow);
     const auto each = [&](auto&& body) {
         for (Index j = 12; j <= 28; ++j)

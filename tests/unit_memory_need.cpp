@@ -47,24 +47,25 @@ TEST_CASE("More particles than fit into memory are refused before they are made"
                    Catch::Contains("give fewer of them"));
 }
 
-TEST_CASE("Columns that become points are counted before they are divided", "[memory]") {
+TEST_CASE("Particles that become points are counted before they are divided", "[memory]") {
     Scene scene = scene_of(kStage);
     const std::vector<std::uint8_t> all(static_cast<std::size_t>(scene.bed.geometry.size()), 1);
-    const FlowColumns columns = columns_of(scene.particles, scene, all);
+    const FlowParticles particles = particles_of(scene.particles, scene, all);
     for (const double spacing : {3.0, 1.0, 0.4, 0.21}) {
         const double cell = scene.bed.geometry.cell;
-        const FlowColumns parts = in_parts(columns, spacing, cell, scene.bed, {1000.0, 2000.0, 1200.0, 2150.0});
-        const PartsForecast forecast = forecast_parts(columns, spacing, cell);
-        CHECK(forecast.columns == static_cast<double>(parts.count()));
+        const FlowParticles parts = in_parts(particles, spacing, cell, scene.bed, {1000.0, 2000.0, 1200.0, 2150.0});
+        const PartsForecast forecast = forecast_parts(particles, spacing, cell);
+        CHECK(forecast.particles == static_cast<double>(parts.count()));
         CHECK(forecast.points == forecast_points(parts, spacing));
     }
-    // Divided first, each of the 240 columns would be 1e12 of them.
+    // Divided first, each of the 240 particles would be 1e12 of them.
     scene.solid->spacing = 1e-6;
     CHECK_THROWS_WITH(StagedRun(scene),
                       Catch::StartsWith("stage.spacing = 1e-06: makes ") && Catch::Contains("give a larger spacing"));
 }
 
-// On all of the terrain the beds of columns, points and run, and depths. On the window's part what the map of points has.
+// On all of the terrain the beds of particles, points and run, and depths. On the window's part what the map of points
+// has.
 TEST_CASE("A 3D stage asks for the memory of its nodes, those of its window above all", "[memory]") {
     Scene scene = scene_of(kStage);
     const auto asked = [&] { return memory_need(scene).nodes; };

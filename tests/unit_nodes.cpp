@@ -42,7 +42,7 @@ TEST_CASE("A wall turns a point round like a mirror", "[nodes]") {
     Scene scene = slope();
     scene.sides = Sides::wall;
     Flow flow(scene);
-    Columns& c = flow.columns;
+    Particles& c = flow.particles;
     c.resize(1);
     c.x[0] = 39.25, c.y[0] = -0.5;
     c.vx[0] = 3.0, c.vy[0] = -2.0;
@@ -70,9 +70,9 @@ TEST_CASE("Peaks hold the speed and the pressure along the bed, and when the flo
     Scene scene = slope();
     scene.density = 1500.0;
     Flow flow(scene);
-    flow.columns.resize(1);
-    flow.columns.x[0] = flow.columns.y[0] = 20.0;
-    TileSorter().sort(flow.columns, flow.grid, {}, flow.active);
+    flow.particles.resize(1);
+    flow.particles.x[0] = flow.particles.y[0] = 20.0;
+    TileSorter().sort(flow.particles, flow.grid, {}, flow.active);
     reach_all(flow);
     const Index k = flow.grid.at(20, 20);
     flow.nodes.depth[k] = 2.0;
@@ -102,9 +102,9 @@ TEST_CASE("Speeds are along the bed smoothed to the curvature's length, with and
     scene.scheme.curvature_length = length;
     scene.curvature = GENERATE(Curvature::inertia, Curvature::none);
     Flow flow(scene);
-    flow.columns.resize(1);
-    flow.columns.x[0] = 45.0, flow.columns.y[0] = 20.0;
-    TileSorter().sort(flow.columns, flow.grid, {}, flow.active);
+    flow.particles.resize(1);
+    flow.particles.x[0] = 45.0, flow.particles.y[0] = 20.0;
+    TileSorter().sort(flow.particles, flow.grid, {}, flow.active);
     reach_all(flow);
     const Index k = flow.grid.at(45, 20);
     flow.nodes.depth[k] = 2.0;

@@ -9,7 +9,7 @@
 #include "catch.h"
 #include "mpm/point_order.h"
 #include "mpm/tile_grid.h"
-#include "shallow/columns.h"
+#include "shallow/particles.h"
 #include "solid3d/material_points.h"
 #include "solid3d/surfaces.h"
 #include "threads_of_test.h"
@@ -146,15 +146,16 @@ TEST_CASE("Tiles of a flow on the map have their turns after adjacent ones that 
     GridGeometry geometry;
     geometry.nx = geometry.ny = 80;
     const TileGrid grid(geometry);
-    Columns columns;
+    Particles particles;
     for (Index j = 0; j < 80; j += 4)
         for (Index i = 0; i < 80; i += 4) {
-            const Index p = columns.count();
-            columns.resize(p + 1);
-            columns.x[p] = static_cast<double>(i) + 0.7, columns.y[p] = static_cast<double>(j) + 0.7, columns.id[p] = p;
+            const Index p = particles.count();
+            particles.resize(p + 1);
+            particles.x[p] = static_cast<double>(i) + 0.7, particles.y[p] = static_cast<double>(j) + 0.7,
+            particles.id[p] = p;
         }
     ActiveTiles active;
-    TileSorter().sort(columns, grid, {}, active);
+    TileSorter().sort(particles, grid, {}, active);
     REQUIRE(active.count() >= 25);
     std::vector<std::vector<Index>> lists;
     for (const int threads : {1, 4}) {

@@ -18,7 +18,7 @@ namespace {
 
 struct Sums {
     double mass = 0, px = 0, py = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
-    explicit Sums(const Columns& c) {
+    explicit Sums(const Particles& c) {
         for (Index p = 0; p < c.count(); ++p) {
             const Moments m = Moments::of(edges_of(c, p));
             mass += c.mass[p], px += c.mass[p] * c.vx[p], py += c.mass[p] * c.vy[p];
@@ -41,7 +41,7 @@ struct Pool {
     Flow flow{scene};
     TileSorter sorter;
     void add(double x, double y, double mass, double size) {
-        Columns& c = flow.columns;
+        Particles& c = flow.particles;
         const Index p = c.count();
         c.resize(p + 1);
         c.x[p] = x, c.y[p] = y, c.mass[p] = mass, c.r1x[p] = c.r2y[p] = size, c.id[p] = p;
@@ -49,11 +49,11 @@ struct Pool {
     }
     /// Points lie where they belong.
     std::vector<std::int32_t> as_sorted() const {
-        std::vector<std::int32_t> points(static_cast<std::size_t>(flow.columns.count()));
+        std::vector<std::int32_t> points(static_cast<std::size_t>(flow.particles.count()));
         std::iota(points.begin(), points.end(), 0);
         return points;
     }
-    void sort(const std::vector<std::uint8_t>& gone = {}) { sorter.sort(flow.columns, flow.grid, gone, flow.active); }
+    void sort(const std::vector<std::uint8_t>& gone = {}) { sorter.sort(flow.particles, flow.grid, gone, flow.active); }
 };
 
 template <class S>
@@ -185,16 +185,16 @@ TEST_CASE("Merging thins a crowd and conserves mass, momentum, centre and second
     for (int k = 0; k < 9; ++k) pool.add(place(random), place(random), mass(random), 0.2);
     pool.add(12.3, 12.3, 1.0, 0.2);  // alone in its square
     pool.sort();
-    const Sums before(pool.flow.columns);
+    const Sums before(pool.flow.particles);
     Index gone = 0;
     std::vector<std::uint8_t> gone_points;
     for (int pass = 0; pass < 20; ++pass) {
         gone += merger.merge(pool.flow, pool.as_sorted(), gone_points);
         pool.sort(gone_points);
-        before.check_equal(Sums(pool.flow.columns));
+        before.check_equal(Sums(pool.flow.particles));
     }
     CHECK(gone == 7);  // two may stay
-    CHECK(pool.flow.columns.count() == 3);
+    CHECK(pool.flow.particles.count() == 3);
 }
 
 TEST_CASE("Two points that merge have the number of the heavier one", "[points]") {
@@ -206,7 +206,7 @@ TEST_CASE("Two points that merge have the number of the heavier one", "[points]"
     pool.add(5.12, 5.1, heavy_first ? 1.0 : 2.0, 0.2);
     pool.add(5.45, 5.45, 4.0, 0.2);
     pool.sort();
-    const Columns& c = pool.flow.columns;
+    const Particles& c = pool.flow.particles;
     const auto number_of = [&](double mass) {
         return c.id[std::find(c.mass.begin(), c.mass.end(), mass) - c.mass.begin()];
     };
@@ -229,7 +229,7 @@ TEST_CASE("A heavy point does not take in the light ones around it: they merge w
     std::vector<std::uint8_t> gone;
     REQUIRE(merger.merge(pool.flow, pool.as_sorted(), gone) == 1);
     pool.sort(gone);
-    std::vector<double> masses(pool.flow.columns.mass.begin(), pool.flow.columns.mass.end());
+    std::vector<double> masses(pool.flow.particles.mass.begin(), pool.flow.particles.mass.end());
     std::sort(masses.begin(), masses.end());
     CHECK(masses == std::vector<double>{2.0, 10.0});
 }
@@ -257,7 +257,7 @@ TEST_CASE("A crowd is thinned by where its points lie, not by the order they are
         std::vector<std::uint8_t> gone;
         CHECK(Merger(2).merge(pool.flow, pool.as_sorted(), gone) > 1);  // each part for itself
         pool.sort(gone);
-        std::vector<double> left(pool.flow.columns.x.begin(), pool.flow.columns.x.end());
+        std::vector<double> left(pool.flow.particles.x.begin(), pool.flow.particles.x.end());
         std::sort(left.begin(), left.end());
         return left;
     };
@@ -278,7 +278,7 @@ TEST_CASE("Parts that splitting holds at the sides lie in the outermost cells of
         Splitter splitter(0.0);
         splitter.set_next_id(2);
         CHECK(splitter.split(pool.flow) == 6);
-        const auto [least, most] = std::minmax_element(pool.flow.columns.x.begin(), pool.flow.columns.x.end());
+        const auto [least, most] = std::minmax_element(pool.flow.particles.x.begin(), pool.flow.particles.x.end());
         const double off = shape == Shape::linear ? 1e-9 : 0.0;  // as far from the last node as from the first
         CHECK(*least == off);
         CHECK(*most == 19.0 - off);
@@ -290,15 +290,15 @@ TEST_CASE("Splitting conserves mass, momentum and centre: two parts along the lo
     for (const double longer : {0.85, 0.9}) {
         Pool pool;
         pool.add(6.2, 6.3, 2.0, 0.85);
-        pool.flow.columns.r1x[0] = longer;
-        pool.flow.columns.cxx[0] = 0.3;  // the children's velocities differ, their sum does not
+        pool.flow.particles.r1x[0] = longer;
+        pool.flow.particles.cxx[0] = 0.3;  // the children's velocities differ, their sum does not
         pool.sort();
-        const Sums before(pool.flow.columns);
+        const Sums before(pool.flow.particles);
         Splitter splitter(0.0);
         splitter.set_next_id(1);
         const Index born = splitter.split(pool.flow);
         CHECK(born == (longer == 0.85 ? 3 : 1));
-        const Sums after(pool.flow.columns);
+        const Sums after(pool.flow.particles);
         CHECK(after.mass == before.mass);
         CHECK(std::abs(after.px - before.px) <= 1e-15 * before.mass);
         CHECK(std::abs(after.x - before.x) <= 1e-14 * before.x);
@@ -313,7 +313,7 @@ TEST_CASE("A point that splits is not drawn in first, one that may not is", "[po
         pool.sort();
         Splitter splitter(least_mass);
         splitter.set_next_id(1);
-        const Columns& c = pool.flow.columns;
+        const Particles& c = pool.flow.particles;
         if (least_mass == 0.0) {
             REQUIRE(splitter.split(pool.flow) == 3);
             for (Index p = 0; p < 4; ++p) {  // quarters of the square, where its quarters were
@@ -334,14 +334,14 @@ TEST_CASE("A point that splits is not drawn in first, one that may not is", "[po
     Splitter splitter(0.0);
     splitter.set_next_id(1);
     REQUIRE(splitter.split(pool.flow) == 3);
-    for (const double edge : pool.flow.columns.r1x) CHECK(std::abs(edge - 1.0) <= 1e-15);
+    for (const double edge : pool.flow.particles.r1x) CHECK(std::abs(edge - 1.0) <= 1e-15);
 }
 
 TEST_CASE("A point that has grown far too heavy for its domain becomes as wide as its mass is, and splits",
           "[points]") {
     const auto split = [](Pool& pool, double mass, double depth) {
         pool.add(6.0, 6.0, mass, 0.5);
-        pool.flow.columns.depth[0] = depth;
+        pool.flow.particles.depth[0] = depth;
         pool.sort();
         Splitter splitter(0.0, 2.0 * pool.flow.density * pool.flow.area);
         splitter.set_next_id(1);
@@ -352,9 +352,9 @@ TEST_CASE("A point that has grown far too heavy for its domain becomes as wide a
     const auto edge_after = [&](double mass, double depth, Index born) {
         Pool pool;
         CHECK(split(pool, mass, depth) == born);
-        CHECK(Sums(pool.flow.columns).mass == mass);
-        for (const double edge : pool.flow.columns.r1x) CHECK(edge == pool.flow.columns.r1x[0]);
-        return pool.flow.columns.r1x[0];
+        CHECK(Sums(pool.flow.particles).mass == mass);
+        for (const double edge : pool.flow.particles.r1x) CHECK(edge == pool.flow.particles.r1x[0]);
+        return pool.flow.particles.r1x[0];
     };
     // Three cells a metre deep in a quarter of one: its edge becomes sqrt(3) cells, and each part's half of it.
     CHECK(edge_after(3.0 * filled, 1.0, 3) == Approx(0.5 * std::sqrt(3.0)).epsilon(1e-15));
@@ -372,12 +372,12 @@ TEST_CASE("Points in a row split and are straightened as each alone", "[points]"
                                 {0.05, 0.0, 0.0, 1.3}, {0.5, 0.0, 0.0, 0.5}};
     const auto put = [](Pool& pool, const Edge& e) {
         pool.add(6.2, 6.3, 2.0, 0.5);
-        set_edges(pool.flow.columns, pool.flow.columns.count() - 1, Edges{e.r1x, e.r1y, e.r2x, e.r2y});
+        set_edges(pool.flow.particles, pool.flow.particles.count() - 1, Edges{e.r1x, e.r1y, e.r2x, e.r2y});
     };
     const auto split = [](Pool& pool) {
         pool.sort();
         Splitter splitter(0.0);
-        splitter.set_next_id(pool.flow.columns.count());
+        splitter.set_next_id(pool.flow.particles.count());
         return splitter.split(pool.flow);
     };
     for (const Edge& e : odd)
@@ -389,11 +389,11 @@ TEST_CASE("Points in a row split and are straightened as each alone", "[points]"
             const Index born = split(alone);
             REQUIRE(split(row) == born);
             for (Index part = 0; part <= born; ++part) {
-                const Edges a = edges_of(alone.flow.columns, part);
-                const Edges b = edges_of(row.flow.columns, part == 0 ? place : 5 + part);
+                const Edges a = edges_of(alone.flow.particles, part);
+                const Edges b = edges_of(row.flow.particles, part == 0 ? place : 5 + part);
                 CHECK((a.r1x == b.r1x && a.r1y == b.r1y && a.r2x == b.r2x && a.r2y == b.r2y));
             }
             for (Index p = 0; p < 6; ++p)
-                if (p != place) CHECK(row.flow.columns.r1x[p] == 0.5);
+                if (p != place) CHECK(row.flow.particles.r1x[p] == 0.5);
         }
 }

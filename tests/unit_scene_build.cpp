@@ -510,11 +510,11 @@ TEST_CASE("A depth raster is interpolated on finer cells: no steps, each pixel's
     const auto depth = [](double x, double y) { return 1.0 + 0.01 * (x - 1050) + 0.02 * (y - 2040); };
     gis.rasters["depth.tif"] = sampled(pixels, depth);
     const Seeds seeds = built(with_release("depth = \"depth.tif\""), gis).scene.particles;
-    // two columns a cell, and between the outer middles of the pixels the depth is linear: so is each patch's mean
+    // two particles a cell, and between the outer middles of the pixels the depth is linear: so is each patch's mean
     Index inside = 0;
     for (Index p = 0; p < seeds.count(); ++p) {
         if (seeds.x[p] < 1075 || seeds.x[p] > 1125 || seeds.y[p] < 2065 || seeds.y[p] > 2095) continue;
-        ++inside;  // the field is constant within a cell, so a column is at most a quarter of a cell off its middle
+        ++inside;  // the field is constant within a cell, so a particle is at most a quarter of a cell off its middle
         CHECK(std::abs(seeds.depth[p] - depth(seeds.x[p], seeds.y[p])) <= 1.25 * (0.01 + 0.02) + 1e-9);
     }
     CHECK(inside > 100);

@@ -39,15 +39,15 @@ struct Slept {
 
 bool same(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
-bool same_columns(const Columns& a, const Columns& b) {
+bool same_particles(const Particles& a, const Particles& b) {
     if (a.id != b.id) return false;
     std::vector<std::pair<const void*, std::size_t>> of_b;
-    b.each([&](const auto& column) { of_b.push_back({column.data(), column.size() * sizeof column[0]}); });
+    b.each([&](const auto& array) { of_b.push_back({array.data(), array.size() * sizeof array[0]}); });
     std::size_t n = 0;
     bool equal = true;
-    a.each([&](const auto& column) {
+    a.each([&](const auto& array) {
         const auto [data, bytes] = of_b[n++];
-        equal = equal && bytes == column.size() * sizeof column[0] && std::memcmp(column.data(), data, bytes) == 0;
+        equal = equal && bytes == array.size() * sizeof array[0] && std::memcmp(array.data(), data, bytes) == 0;
     });
     return equal;
 }
@@ -91,7 +91,8 @@ Slept compare(Scene scene, int steps, Until until_of = all_lengths) {
         before = now;
         CAPTURE(step, slept.at_end);
         REQUIRE(same_status(sleeper.status(), waker.status()));
-        if (step % 10 == 9 || step == steps - 1) REQUIRE(same_columns(sleeper.flow().columns, waker.flow().columns));
+        if (step % 10 == 9 || step == steps - 1)
+            REQUIRE(same_particles(sleeper.flow().particles, waker.flow().particles));
         if (step % 60 != 59) continue;
         const Frame a = sleeper.frame(), b = waker.frame();
         for (const auto fields : {&Frame::particles, &Frame::nodes})
@@ -223,7 +224,7 @@ TEST_CASE("Material asleep at an exit that opens leaves, and what stays has the 
     for (Index j = j0; j < std::min(j0 + kTile, grid.ny()); ++j)
         for (Index i = i0; i < grid.nx(); ++i) marks[static_cast<std::size_t>(j * grid.nx() + i)] = 1;
     double inside = 0.0;
-    const Columns& c = sleeper.flow().columns;
+    const Particles& c = sleeper.flow().particles;
     for (Index p = 0; p < c.count(); ++p) {
         const auto near = [](double u) { return static_cast<Index>(std::floor(u + 0.5)); };
         if (marks[static_cast<std::size_t>(near(c.y[p]) * grid.nx() + near(c.x[p]))]) inside += c.mass[p];
@@ -231,14 +232,14 @@ TEST_CASE("Material asleep at an exit that opens leaves, and what stays has the 
     REQUIRE(inside > 0.0);
     sleeper.open_exits(marks, true), waker.open_exits(marks, true);
     CHECK(sleeper.status().mass_left == Approx(inside).epsilon(1e-13));
-    CHECK(same_columns(sleeper.flow().columns, waker.flow().columns));
+    CHECK(same_particles(sleeper.flow().particles, waker.flow().particles));
     double fastest = 0.0;
     for (int step = 0; step < 30; ++step) {
         sleeper.advance(1e9), waker.advance(1e9);
         CAPTURE(step);
         fastest = std::max(fastest, waker.status().max_speed_on_map);
         REQUIRE(same_status(sleeper.status(), waker.status()));
-        REQUIRE(same_columns(sleeper.flow().columns, waker.flow().columns));
+        REQUIRE(same_particles(sleeper.flow().particles, waker.flow().particles));
     }
     CHECK(fastest > 0.1);  // banks of 1 m fall into the gap
 }

@@ -58,7 +58,7 @@ TEST_CASE("Behind a stuck surface mirror particles of a bending flow go on with 
     const std::vector<Surface> corner = {Surface::plane({0, 0, 0}, {0, 0, 1}, Hold::stuck),
                                          Surface::plane({0, 0, 0}, {0, 1, 0})};
     MaterialPoints q;
-    q.each([](Array& column) { column.assign(1, 0.0); });
+    q.each([](Array& array) { array.assign(1, 0.0); });
     q.mass[0] = 3.0, q.rest_volume[0] = 1.0, q.j[0] = 1.0;
     for (int k = 0; k < 3; ++k) {
         q.v[static_cast<std::size_t>(k)][0] = slope[k] * x.z() + bend[k] * x.z() * x.z();

@@ -106,7 +106,7 @@ TEST_CASE("A window is closed where the case says so, and where it reaches walls
     CHECK(near.window == std::array<Index, 4>{0, 0, 11, 19});
 }
 
-TEST_CASE("A 3D stage ends where columns follow it", "[stages]") {
+TEST_CASE("A 3D stage ends where particles follow it", "[stages]") {
     const std::string after = "[[stage]]\nmodel = \"depth_averaged\"\n";
     const SolidStage middle = scene_of(two + west + "until = 12\n" + after).solid.value();
     CHECK(middle.from == 8.0);
@@ -118,7 +118,7 @@ TEST_CASE("A 3D stage ends where columns follow it", "[stages]") {
     CHECK_FALSE(scene_of(two + west).solid->until.has_value());
 }
 
-TEST_CASE("A stage of columns to the end changes nothing", "[stages]") {
+TEST_CASE("A stage of particles to the end changes nothing", "[stages]") {
     CHECK_FALSE(scene_of("[[stage]]\nmodel = \"depth_averaged\"\n").solid.has_value());
     CHECK_FALSE(scene_of("").solid.has_value());
 }
@@ -142,15 +142,15 @@ TEST_CASE("Stages that cannot be are refused in one sentence", "[stages]") {
             "stage.0.until: found 25 s; expected a time before time.end = 20 s"));
     CHECK(has(problem_of("[[stage]]\nmodel = \"depth_averaged\"\n[[stage]]\nmodel = \"solid_flow\"\n" + west),
               "stage.0: not given until, and another stage follows"));
-    const std::string columns = "[[stage]]\nmodel = \"depth_averaged\"\n";
-    CHECK(has(problem_of(two + west + columns), "stage.1: not given until, and another stage follows"));
-    CHECK(has(problem_of(two + west + "until = 8\n" + columns),
+    const std::string particles = "[[stage]]\nmodel = \"depth_averaged\"\n";
+    CHECK(has(problem_of(two + west + particles), "stage.1: not given until, and another stage follows"));
+    CHECK(has(problem_of(two + west + "until = 8\n" + particles),
               "stage.1.until: found 8 s; expected a time between the stage's begin, 8 s, and time.end = 20 s"));
-    CHECK(has(problem_of(two + west + "until = 12\n" + columns + "until = 99\n"),
+    CHECK(has(problem_of(two + west + "until = 12\n" + particles + "until = 99\n"),
               "stage.2.until: found 99 s; expected none in the last stage, or time.end = 20 s"));
-    CHECK(has(problem_of("[[stage]]\nmodel = \"depth_averaged\"\nuntil = 5\n" + columns),
+    CHECK(has(problem_of("[[stage]]\nmodel = \"depth_averaged\"\nuntil = 5\n" + particles),
               "stage.1: found it after the others"));
-    CHECK(has(problem_of(two + west + "until = 12\n" + columns + "until = 15\n[[stage]]\nmodel = \"solid_flow\"\n"),
+    CHECK(has(problem_of(two + west + "until = 12\n" + particles + "until = 15\n[[stage]]\nmodel = \"solid_flow\"\n"),
               "stage.3: found it after the others; expected depth_averaged, then solid_flow, then depth_averaged"));
     CHECK(has(problem_of(two + west + "until = 15\n"), "stage.1.until: found 15 s; expected none in the last stage"));
     CHECK(
@@ -309,7 +309,7 @@ TEST_CASE("A barrier of any shape comes from a mesh alone, through the reader th
     CHECK(asked.margin >= 3.0 * std::sqrt(3.0) * 2.0);
     CHECK(asked.origin.isZero(0.0));
     scene_with("mesh = \"wall.stl\"\norigin = [5, 6, 7]\n");
-    CHECK(asked.spacing == 2.5);  // half a cell of the columns
+    CHECK(asked.spacing == 2.5);  // half a cell of the particles
     CHECK(asked.origin == Vec3(5, 6, 7));
 
     const auto problem = [&](const std::string& keys) { return only_problem([&] { scene_with(keys); }); };

@@ -1,4 +1,4 @@
-// The pressure that columns have on their bed when they become 3D points.
+// The pressure that particles have on their bed when they become 3D points.
 #include "analytic_scene.h"
 #include "catch.h"
 #include "coupling/start_pressure.h"
@@ -10,9 +10,9 @@ namespace {
 
 constexpr double kSlope = 0.4;  // dZ/dx
 
-/// Columns on a grid over a plane bed, of the depth h(x), from x = 1 to 8 m; bed_pressure is not filled.
-FlowColumns columns(const Scene& scene, const std::function<double(double x)>& depth, double spacing) {
-    FlowColumns c;
+/// Particles on a grid over a plane bed, of the depth h(x), from x = 1 to 8 m; bed_pressure is not filled.
+FlowParticles particles(const Scene& scene, const std::function<double(double x)>& depth, double spacing) {
+    FlowParticles c;
     for (double y = 0.5 * spacing; y < 3.0; y += spacing)
         for (double x = 1.0 + 0.5 * spacing; x < 8.0; x += spacing) {
             if (!(depth(x) > 0.0)) continue;
@@ -30,7 +30,7 @@ Scene slope() {
 }
 
 /// Largest and least bed pressure over rho g h.
-std::pair<double, double> share(const FlowColumns& c, const Scene& scene) {
+std::pair<double, double> share(const FlowParticles& c, const Scene& scene) {
     double low = 1e9, high = -1e9;
     for (std::size_t k = 0; k < c.count(); ++k) {
         const double s = c.bed_pressure[k] / (scene.density * scene.gravity * c.depth[k]);
@@ -46,12 +46,12 @@ TEST_CASE("A lake bears its whole weight on a slope, a sheet cos^2 of it, up to 
     const double cos2 = 1.0 / (1.0 + kSlope * kSlope);
     for (const double spacing : {1.0, 0.5, 0.25}) {
         CAPTURE(spacing);
-        FlowColumns lake = columns(
+        FlowParticles lake = particles(
             scene, [](double x) { return 3.0 - kSlope * x; }, spacing);
         take_start_pressure(lake, scene);
         CHECK(share(lake, scene).first == Approx(1.0).epsilon(1e-12));
         CHECK(share(lake, scene).second == Approx(1.0).epsilon(1e-12));
-        FlowColumns sheet = columns(
+        FlowParticles sheet = particles(
             scene, [](double) { return 0.7; }, spacing);
         take_start_pressure(sheet, scene);
         CHECK(share(sheet, scene).first == Approx(cos2).epsilon(1e-12));
@@ -66,13 +66,13 @@ TEST_CASE("The pressure at the start lies between a lake's and a sheet's, whatev
     for (const auto& [rise, expected] : {std::pair{-2.0, 1.0}, {-0.5 * kSlope, half}, {3.0, cos2}}) {
         CAPTURE(rise);
         const double r = rise;
-        FlowColumns c = columns(
+        FlowParticles c = particles(
             scene, [&](double x) { return (r < 0.0 ? 20.0 : 1.0) + r * x; }, 0.5);
         take_start_pressure(c, scene);
         CHECK(share(c, scene).first == Approx(expected).epsilon(1e-12));
         CHECK(share(c, scene).second == Approx(expected).epsilon(1e-12));
     }
-    FlowColumns one = columns(
+    FlowParticles one = particles(
         scene, [](double x) { return x < 1.3 ? 1.0 : 0.0; }, 0.5);
     one.x.resize(1);
     for (auto* list : {&one.y, &one.bed, &one.depth, &one.vx, &one.vy, &one.mass, &one.volume, &one.bed_pressure,
@@ -82,11 +82,11 @@ TEST_CASE("The pressure at the start lies between a lake's and a sheet's, whatev
     CHECK(share(one, scene).first == Approx(cos2).epsilon(1e-12));  // nothing is known of its surface
 }
 
-TEST_CASE("A column alone has a pressure wherever it stands, and one of two in a row has", "[stages]") {
+TEST_CASE("A particle alone has a pressure wherever it stands, and one of two in a row has", "[stages]") {
     const Scene scene = slope();
     for (int n = 1; n < 400; ++n) {
         const double x = 1.0 + 0.0071 * n, y = 1.0 + 0.0053 * n;
-        FlowColumns c = columns(
+        FlowParticles c = particles(
             scene, [](double at) { return at < 1.3 ? 1.0 : 0.0; }, 0.5);
         const std::size_t count = n % 2 ? 1 : 2;
         for (auto* list : {&c.x, &c.y, &c.bed, &c.depth, &c.vx, &c.vy, &c.mass, &c.volume, &c.bed_pressure, &c.id,

@@ -71,7 +71,7 @@ TEMPLATE_TEST_CASE("V17: weights and slopes go on without a jump from one stenci
     }
 }
 
-TEST_CASE("V17: columns take a linear velocity from the nodes, and its gradient, exactly", "[structured]") {
+TEST_CASE("V17: particles take a linear velocity from the nodes, and its gradient, exactly", "[structured]") {
     StructuredScene scene;
     scene.grid = verify::grid_over({0, 0}, {4, 3}, 0.1);
     scene.ground = [](double, double) { return GroundGravity{0, 0, 0}; };
@@ -87,7 +87,8 @@ TEST_CASE("V17: columns take a linear velocity from the nodes, and its gradient,
     }
     const StructuredSeeds seeds = q;
     StructuredFlow flow(scene);
-    flow.advance(1e-9);  // columns stand on a lattice: what nodes get is linear too, but for those at the block's edge
+    flow.advance(
+        1e-9);  // particles stand on a lattice: what nodes get is linear too, but for those at the block's edge
     const StructuredPoints& now = flow.body().points;
     int inside = 0;
     for (Index p = 0; p < now.count(); ++p) {

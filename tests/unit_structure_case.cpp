@@ -48,9 +48,9 @@ TEST_CASE("A structure's keys reach the scene", "[structured]") {
     CHECK(plain.material.friction == Approx(std::acos(-1.0) / 6.0).epsilon(1e-15));
     CHECK(plain.material.poisson == 0.3);
     CHECK(plain.material.critical_strain == 0.1);
-    CHECK(ColumnMaterial{}.critical_strain == 0.1);  // one default, whoever asks for it
-    CHECK(ColumnMaterial{}.poisson == 0.3);
-    CHECK(plain.material.yield == ColumnYield::compression);
+    CHECK(StructuredMaterial{}.critical_strain == 0.1);  // one default, whoever asks for it
+    CHECK(StructuredMaterial{}.poisson == 0.3);
+    CHECK(plain.material.yield == StructuredYield::compression);
     CHECK(plain.material.damage_by == DamageBy::dilation);
     CHECK_FALSE(plain.unrolled);
     CHECK_FALSE(plain.hydrostatic);
@@ -65,7 +65,7 @@ TEST_CASE("A structure's keys reach the scene", "[structured]") {
     CHECK(other.hydrostatic);
     CHECK(other.material.critical_strain == Approx(0.04).epsilon(1e-15));
     CHECK(other.material.poisson == Approx((3e8 - 1e8) / 6e8).epsilon(1e-15));
-    CHECK(other.material.yield == ColumnYield::plane_strain);
+    CHECK(other.material.yield == StructuredYield::plane_strain);
     CHECK(other.material.damage_by == DamageBy::strain);
     CHECK(other.material.onset == 0.02);
     CHECK(other.share == 0.8);
@@ -73,7 +73,7 @@ TEST_CASE("A structure's keys reach the scene", "[structured]") {
     CHECK(other.unrolled);
     std::string hexagon = structure;
     hexagon.replace(hexagon.find("drucker_prager"), 14, "mohr_coulomb");
-    CHECK(scene_of(hexagon).structure->material.yield == ColumnYield::hexagon);
+    CHECK(scene_of(hexagon).structure->material.yield == StructuredYield::hexagon);
 }
 
 TEST_CASE("Water with a structure reaches the scene, and what does not fit it is refused", "[structured][mixture]") {
@@ -213,7 +213,7 @@ TEST_CASE("A barrier's box that is widened, or that a release lies in, is told",
     const std::string thin = said("wall.geojson", 8.0);
     CHECK(has(thin,
               "barriers: found 1 of 1 thinner than 3 cells of 5 m, the thinnest \"barrier_1\" with 5 m; structured "
-              "columns would go through those, and meet boxes 15 m wide about their middles"));
+              "particles would go through those, and meet boxes 15 m wide about their middles"));
     CHECK_FALSE(has(thin, "stands on the cells that it cuts"));
     CHECK_FALSE(has(said("thick.geojson", 8.0), "thinner than 3 cells"));
     CHECK(has(said("within.geojson", 8.0), "m3 of releases within it"));

@@ -1,4 +1,4 @@
-// The law of structured columns against closed forms. Angles in degrees, stress in Pa, tension positive.
+// The law of structured particles against closed forms. Angles in degrees, stress in Pa, tension positive.
 #include <fmt/core.h>
 
 #include <chrono>
@@ -8,7 +8,7 @@
 
 #include "base/constants.h"
 #include "catch.h"
-#include "checks/verify/strained_column.h"
+#include "checks/verify/strained_particle.h"
 #include "law/structured_law.h"
 
 using namespace frana;
@@ -20,7 +20,7 @@ constexpr double kDegree = constants::kPi / 180.0;
 /// The return stops within 1e-7 of strength and weight (structured_law.cpp), which the cone's slope makes a few times more.
 constexpr double kReturned = 1e-6;
 
-double q_of(const ColumnStress& s) {
+double q_of(const StructuredStress& s) {
     const double mean = (s.xx + s.yy + s.zz) / 3.0;
     return std::sqrt(0.5 * (std::pow(s.xx - mean, 2) + std::pow(s.yy - mean, 2) + std::pow(s.zz - mean, 2)) +
                      s.xy * s.xy);
@@ -28,13 +28,13 @@ double q_of(const ColumnStress& s) {
 
 }  // namespace
 
-TEST_CASE("V1: a column that turns takes its stress along, in any number of steps", "[structured]") {
+TEST_CASE("V1: a particle that turns takes its stress along, in any number of steps", "[structured]") {
     const int steps = GENERATE(1, 50, 500, 5000);
-    const ColumnLaw law(unbroken_clay(28.0));
+    const StructuredLaw law(unbroken_clay(28.0));
     const double angle = 2.0 * constants::kPi + 0.6;
-    ColumnState state;
+    StructuredState state;
     state.stress = {3e3, -5e3, -2e3, 1e3};
-    const ColumnStress s = strained(law, steps, {0, 0, 0, angle / steps}, -2e3, 1e9, state).stress;
+    const StructuredStress s = strained(law, steps, {0, 0, 0, angle / steps}, -2e3, 1e9, state).stress;
     const double c = std::cos(angle), d = std::sin(angle);
     CAPTURE(steps);
     // Round-off of so many turns.
@@ -46,17 +46,17 @@ TEST_CASE("V1: a column that turns takes its stress along, in any number of step
 }
 
 TEST_CASE("V2: strain along one axis is Hooke's with the weight given", "[structured]") {
-    const ColumnLaw law(unbroken_clay(28.0));
+    const StructuredLaw law(unbroken_clay(28.0));
     const double e = 1e-3, young = 5e6, nu = 0.3;
-    const ColumnStress held = strained(law, 1, {e, 0, 0, 0}, 0.0, 1e9).stress;
+    const StructuredStress held = strained(law, 1, {e, 0, 0, 0}, 0.0, 1e9).stress;
     CHECK(held.xx == Approx(young / (1 - nu * nu) * e).epsilon(1e-14));
     CHECK(held.yy == Approx(nu * held.xx).epsilon(1e-14));
     CHECK(held.zz == 0.0);
-    const ColumnStress free = strained(law, 1, {e, -nu * e, 0, 0}, 0.0, 1e9).stress;
+    const StructuredStress free = strained(law, 1, {e, -nu * e, 0, 0}, 0.0, 1e9).stress;
     CHECK(free.xx == Approx(young * e).epsilon(1e-14));
     CHECK(std::abs(free.yy) < 1e-12 * young * e);
     // More weight pushes sideways where nothing can give way.
-    const ColumnStress loaded = strained(law, 1, {}, -700.0, 1e9).stress;
+    const StructuredStress loaded = strained(law, 1, {}, -700.0, 1e9).stress;
     CHECK(loaded.xx == Approx(-700.0 * nu / (1 - nu)).epsilon(1e-14));
 }
 
@@ -75,19 +75,19 @@ TEST_CASE("V3: elastic simple shear: G sin(gamma), G (1 - cos(gamma)), of second
 
 TEST_CASE("V4: simple shear under a pressure goes to k + 3 alpha p and keeps its mean stress", "[structured]") {
     const double p = 1e4, c = 2e4;
-    const auto plateau = [&](ColumnYield yield) {
-        const ColumnLaw law(unbroken_clay(28.0, yield));
-        ColumnState state;
+    const auto plateau = [&](StructuredYield yield) {
+        const StructuredLaw law(unbroken_clay(28.0, yield));
+        StructuredState state;
         state.stress = {-p, -p, -p, 0.0};
         return strained(law, 1000, {0, 0, 5e-5, 0.0}, -p, c, state).stress;
     };
-    const ColumnStress tri = plateau(ColumnYield::compression), plane = plateau(ColumnYield::plane_strain),
-                       pyramid = plateau(ColumnYield::hexagon);
+    const StructuredStress tri = plateau(StructuredYield::compression), plane = plateau(StructuredYield::plane_strain),
+                           pyramid = plateau(StructuredYield::hexagon);
     CHECK(tri.xy == Approx(30600.5).epsilon(2e-6));  // two-phase spec, V4
     CHECK(plane.xy == Approx(c * std::cos(28 * kDegree) + p * std::sin(28 * kDegree)).epsilon(1e-9));
     CHECK(plane.xy == Approx(22353.7).epsilon(2e-6));
     CHECK(pyramid.xy == Approx(plane.xy).epsilon(1e-9));  // Mohr's circle through the same centre
-    for (const ColumnStress& s : {tri, plane, pyramid}) {
+    for (const StructuredStress& s : {tri, plane, pyramid}) {
         CHECK((s.xx + s.yy) / 2 == Approx(-p).epsilon(1e-9));
         CHECK(s.zz == -p);
     }
@@ -95,7 +95,7 @@ TEST_CASE("V4: simple shear under a pressure goes to k + 3 alpha p and keeps its
 
 TEST_CASE("V5: the return of a cone that dilates: multiplier, pressure and shear strength grow together",
           "[structured]") {
-    const ColumnLaw law(unbroken_clay(28.0, ColumnYield::plane_strain, 10.0));
+    const StructuredLaw law(unbroken_clay(28.0, StructuredYield::plane_strain, 10.0));
     const double p = 1e4, k = law.strength(2e4), alpha = law.alpha(), flows = std::sin(10 * kDegree) / 3.0;
     const double q0 = k + 3 * alpha * p, gamma = 1e-3;
     const ConeReturn back = law.to_cone(q0 + law.shear() * gamma, -3 * p, k);
@@ -109,23 +109,23 @@ TEST_CASE("V5: the return of a cone that dilates: multiplier, pressure and shear
 TEST_CASE(
     "V5: plastic strain in the plane is the elastic strain that the return takes away, wherever the trial stress lies",
     "[structured]") {
-    const ColumnYield yield = GENERATE(ColumnYield::compression, ColumnYield::plane_strain);
+    const StructuredYield yield = GENERATE(StructuredYield::compression, StructuredYield::plane_strain);
     // What dilates as much as it rubs and hardly shrinks has states that Newton's method leaves to the search.
     const auto [phi, psi, poisson] =
         GENERATE(std::tuple(28.0, 0.0, 0.3), std::tuple(28.0, 10.0, 0.3), std::tuple(45.0, 45.0, 0.45));
-    ColumnMaterial m = unbroken_clay(phi, yield, psi);
+    StructuredMaterial m = unbroken_clay(phi, yield, psi);
     m.poisson = poisson;
-    const ColumnLaw law(m);
+    const StructuredLaw law(m);
     std::mt19937 random(5);
     std::uniform_real_distribution<double> size(2.0, 7.0), side(-1.0, 1.0);
     const auto stress = [&] { return std::copysign(std::pow(10.0, size(random)), side(random)); };
     int yielded = 0;
     for (int n = 0; n < 20000; ++n) {
         const double c = std::pow(10.0, size(random) - 2.0);
-        const ColumnStress trial{stress(), stress(), -std::pow(10.0, size(random) - 1.0), stress()};
+        const StructuredStress trial{stress(), stress(), -std::pow(10.0, size(random) - 1.0), stress()};
         if (law.excess(trial, c) <= 0.0) continue;
         ++yielded;
-        ColumnStress s = trial;
+        StructuredStress s = trial;
         const PlasticStep plastic = law.yield(c, s);
         const double dx = trial.xx - s.xx, dy = trial.yy - s.yy, xy = (1.0 + m.poisson) / m.young * (trial.xy - s.xy);
         const double exx = (dx - m.poisson * dy) / m.young, eyy = (dy - m.poisson * dx) / m.young;
@@ -140,16 +140,16 @@ TEST_CASE(
 }
 
 TEST_CASE("V6: tension in all directions ends at c cot(phi), and a returned stress stays", "[structured]") {
-    const ColumnYield yield = GENERATE(ColumnYield::compression, ColumnYield::plane_strain);
+    const StructuredYield yield = GENERATE(StructuredYield::compression, StructuredYield::plane_strain);
     const double psi = GENERATE(0.0, 10.0), c = 2e4;
-    const ColumnLaw law(unbroken_clay(28.0, yield, psi));
+    const StructuredLaw law(unbroken_clay(28.0, yield, psi));
     const ConeReturn back = law.to_cone(10.0, 1e6, law.strength(c));
     CHECK(back.scale == 0.0);
     CHECK(back.first / 3.0 == Approx(c / std::tan(28 * kDegree)).epsilon(1e-14));
-    ColumnStress s{7e4, 2e4, -3e3, 1.5e4};
+    StructuredStress s{7e4, 2e4, -3e3, 1.5e4};
     law.yield(c, s);
     CHECK(std::abs(law.excess(s, c)) < 2e-7 * law.strength(c));
-    const ColumnStress once = s;
+    const StructuredStress once = s;
     law.yield(c, s);
     CHECK(std::hypot(s.xx - once.xx, s.yy - once.yy, s.xy - once.xy) < 1e-6 * law.strength(c));
 }
@@ -157,9 +157,10 @@ TEST_CASE("V6: tension in all directions ends at c cot(phi), and a returned stre
 TEST_CASE("V7: unconfined compression holds 2 c cos(phi) / (1 - sin(phi))", "[structured]") {
     for (const auto& [c, phi, printed] : {std::tuple(26.7e3, 28.0, 88.87e3), std::tuple(18.3e3, 27.0, 59.73e3)}) {
         // The flume's clays, as printed.
-        CHECK(unconfined_strength(ColumnLaw(unbroken_clay(phi)), c) == Approx(printed).margin(5.0));
-        for (const ColumnYield yield : {ColumnYield::compression, ColumnYield::hexagon, ColumnYield::plane_strain}) {
-            const ColumnLaw law(unbroken_clay(phi, yield));
+        CHECK(unconfined_strength(StructuredLaw(unbroken_clay(phi)), c) == Approx(printed).margin(5.0));
+        for (const StructuredYield yield :
+             {StructuredYield::compression, StructuredYield::hexagon, StructuredYield::plane_strain}) {
+            const StructuredLaw law(unbroken_clay(phi, yield));
             CHECK(squeezed_strength(law, c) == Approx(unconfined_strength(law, c)).epsilon(kReturned));
         }
     }
@@ -167,23 +168,24 @@ TEST_CASE("V7: unconfined compression holds 2 c cos(phi) / (1 - sin(phi))", "[st
 
 TEST_CASE("V7: unconfined tension holds what cone and pyramid say", "[structured]") {
     const double c = 1e4, phi = 30.0 * kDegree;
-    const auto strength = [&](ColumnYield yield) {
-        return squeezed_alone(ColumnLaw(unbroken_clay(30.0, yield)), 0.05, 0.0, c).stress.xx;
+    const auto strength = [&](StructuredYield yield) {
+        return squeezed_alone(StructuredLaw(unbroken_clay(30.0, yield)), 0.05, 0.0, c).stress.xx;
     };
-    CHECK(strength(ColumnYield::compression) == Approx(6 * c * std::cos(phi) / (3 + std::sin(phi))).epsilon(kReturned));
-    CHECK(strength(ColumnYield::hexagon) == Approx(2 * c * std::cos(phi) / (1 + std::sin(phi))).epsilon(kReturned));
+    CHECK(strength(StructuredYield::compression) ==
+          Approx(6 * c * std::cos(phi) / (3 + std::sin(phi))).epsilon(kReturned));
+    CHECK(strength(StructuredYield::hexagon) == Approx(2 * c * std::cos(phi) / (1 + std::sin(phi))).epsilon(kReturned));
 }
 
 TEST_CASE("V8: at constant dilation all bonds are broken when the plastic part is the critical strain",
           "[structured]") {
-    ColumnMaterial m = unbroken_clay(28.0, GENERATE(ColumnYield::compression, ColumnYield::hexagon));
+    StructuredMaterial m = unbroken_clay(28.0, GENERATE(StructuredYield::compression, StructuredYield::hexagon));
     m.critical_strain = 0.05;
-    const ColumnLaw law(m);
+    const StructuredLaw law(m);
     const double d = 1e-5, c0 = 2e4, lame = m.young / (1 - m.poisson);
-    ColumnState state;
+    StructuredState state;
     double plastic = 0.0, worst = 0.0;
     for (int n = 0; n < 20000 && state.damage < 1.0; ++n) {
-        const ColumnState before = state;
+        const StructuredState before = state;
         law.update({d, d, 0.0, 0.0}, 0.0, c0, state);
         if (before.damage > 0.0 && state.damage < 1.0) {
             plastic += 2.0 * d - (state.stress.xx + state.stress.yy - before.stress.xx - before.stress.yy) / lame;
@@ -201,12 +203,12 @@ TEST_CASE("V8: at constant dilation all bonds are broken when the plastic part i
 }
 
 TEST_CASE("V8: in compression nothing breaks by dilation, and something by extension", "[structured]") {
-    ColumnMaterial m = unbroken_clay(28.0);
+    StructuredMaterial m = unbroken_clay(28.0);
     m.critical_strain = 0.05;
     const auto damage = [&](DamageBy by) {
         m.damage_by = by;
         m.onset = 0.02;
-        return squeezed_alone(ColumnLaw(m), -0.05, 0.0, 2e4).damage;
+        return squeezed_alone(StructuredLaw(m), -0.05, 0.0, 2e4).damage;
     };
     CHECK(damage(DamageBy::dilation) == 0.0);
     CHECK(damage(DamageBy::extension) > 0.1);
@@ -214,10 +216,10 @@ TEST_CASE("V8: in compression nothing breaks by dilation, and something by exten
 }
 
 TEST_CASE("Damage by strain: none before the onset, exponential behind it", "[structured]") {
-    ColumnMaterial m = unbroken_clay(28.0);
+    StructuredMaterial m = unbroken_clay(28.0);
     m.damage_by = DamageBy::strain, m.critical_strain = 0.1, m.onset = 0.05;
-    const ColumnLaw law(m);
-    ColumnState state = strained(law, 49, {1e-3, 0, 0, 0}, 0.0, 1e3);  // yields from the first steps on
+    const StructuredLaw law(m);
+    StructuredState state = strained(law, 49, {1e-3, 0, 0, 0}, 0.0, 1e3);  // yields from the first steps on
     CHECK(state.damage == 0.0);
     state = strained(law, 101, {1e-3, 0, 0, 0}, 0.0, 1e3, state);
     CHECK(state.damage == Approx(1.0 - std::exp(-100 * 1e-3 / 0.1)).epsilon(0.02));
@@ -226,10 +228,10 @@ TEST_CASE("Damage by strain: none before the onset, exponential behind it", "[st
 TEST_CASE("Bell: extended both ways, the lateral stress is -(Ka p - 2 c sqrt(Ka)), whatever the weight",
           "[structured]") {
     const double p = GENERATE(0.0, 5e3, 30e3, 100e3), c = 2e4;
-    const ColumnLaw law(unbroken_clay(28.0, GENERATE(ColumnYield::compression, ColumnYield::hexagon)));
-    ColumnState state;
+    const StructuredLaw law(unbroken_clay(28.0, GENERATE(StructuredYield::compression, StructuredYield::hexagon)));
+    StructuredState state;
     state.stress.zz = -p;
-    const ColumnStress s = strained(law, 2000, {1e-4, 1e-4, 0.0, 0.0}, -p, c, state).stress;
+    const StructuredStress s = strained(law, 2000, {1e-4, 1e-4, 0.0, 0.0}, -p, c, state).stress;
     const double bell = -(law.active() * p - 2 * c * std::sqrt(law.active()));
     CAPTURE(p);
     CHECK(s.xx == Approx(bell).margin(1e-6 * c));
@@ -238,12 +240,12 @@ TEST_CASE("Bell: extended both ways, the lateral stress is -(Ka p - 2 c sqrt(Ka)
 
 TEST_CASE("The pyramid's return ends on the pyramid, on its side, and does no negative work", "[structured]") {
     const double psi = GENERATE(0.0, 28.0), weight = GENERATE(0.0, -2e4);
-    const ColumnLaw law(unbroken_clay(28.0, ColumnYield::hexagon, psi));
+    const StructuredLaw law(unbroken_clay(28.0, StructuredYield::hexagon, psi));
     int yielded = 0;
     for (int n = 0; n < 400; ++n) {
         const double a = 0.11 * n, size = 3e4 + 500.0 * n;
-        ColumnStress s{size * std::cos(a), size * std::sin(a), weight, 0.4 * size * std::cos(3.7 * a)};
-        const ColumnStress trial = s;
+        StructuredStress s{size * std::cos(a), size * std::sin(a), weight, 0.4 * size * std::cos(3.7 * a)};
+        const StructuredStress trial = s;
         if (law.excess(s, 1e4) <= 0.0) continue;
         const PlasticStep plastic = law.yield(1e4, s);
         CAPTURE(n, trial.xx, trial.yy, trial.xy);
@@ -268,14 +270,14 @@ TEST_CASE("Any stress outside a cone comes back to it with zz as it was, from ne
     int yielded = 0;
     for (int n = 0; n < 20000; ++n) {
         const double phi = 5.0 + 35.0 * unit(random);
-        const ColumnLaw law(unbroken_clay(phi, ColumnYield::compression, dilates * phi));
+        const StructuredLaw law(unbroken_clay(phi, StructuredYield::compression, dilates * phi));
         const double weight = -std::pow(10.0, 2.0 + 3.0 * unit(random)),
                      cohesion = std::pow(10.0, 1.0 + 5.0 * both(random)),
                      size = std::pow(10.0, 1.0 + 5.0 * unit(random));
-        const ColumnStress trial{weight + size * both(random), weight + size * both(random), weight,
-                                 size * both(random)};
+        const StructuredStress trial{weight + size * both(random), weight + size * both(random), weight,
+                                     size * both(random)};
         if (law.excess<double>(trial, cohesion) <= 0.0) continue;
-        ColumnStress s = trial;
+        StructuredStress s = trial;
         const PlasticStep plastic = law.yield(cohesion, s);
         ++yielded;
         // zz is met to 1e-7 of strength and weight; the surface rises by less than that with it.
@@ -290,24 +292,24 @@ TEST_CASE("Any stress outside a cone comes back to it with zz as it was, from ne
     CHECK(yielded > 5000);
 }
 
-TEST_CASE("Four columns at once come out as one after the other, to round-off", "[structured]") {
-    ColumnMaterial m =
-        unbroken_clay(28.0, GENERATE(ColumnYield::compression, ColumnYield::plane_strain, ColumnYield::hexagon));
+TEST_CASE("Four particles at once come out as one after the other, to round-off", "[structured]") {
+    StructuredMaterial m = unbroken_clay(
+        28.0, GENERATE(StructuredYield::compression, StructuredYield::plane_strain, StructuredYield::hexagon));
     m.critical_strain = 0.05;
-    const ColumnLaw law(m);
-    ColumnState one[4];
-    ColumnStateOf<Double4> four;
+    const StructuredLaw law(m);
+    StructuredState one[4];
+    StructuredStateOf<Double4> four;
     for (int step = 0; step < 200; ++step) {
-        ColumnStepOf<Double4> d4;
+        StructuredStepOf<Double4> d4;
         Double4 weight, cohesion;
         for (int n = 0; n < 4; ++n) {
             const double a = 0.3 * n + 0.01 * step;
-            const ColumnStep d{2e-4 * std::cos(a), 1e-4 * n, 1e-4 * std::sin(2 * a), n == 3 ? 0.2 : 1e-3};
+            const StructuredStep d{2e-4 * std::cos(a), 1e-4 * n, 1e-4 * std::sin(2 * a), n == 3 ? 0.2 : 1e-3};
             weight[n] = -1e3 * n, cohesion[n] = 5e2 * (n + 1);
             d4.xx[n] = d.xx, d4.yy[n] = d.yy, d4.xy[n] = d.xy, d4.turn[n] = d.turn;
         }
         for (int n = 0; n < 4; ++n)
-            law.update(ColumnStep{d4.xx[n], d4.yy[n], d4.xy[n], d4.turn[n]}, weight[n], cohesion[n], one[n]);
+            law.update(StructuredStep{d4.xx[n], d4.yy[n], d4.xy[n], d4.turn[n]}, weight[n], cohesion[n], one[n]);
         law.update(d4, weight, cohesion, four);
     }
     int damaged = 0;
@@ -322,9 +324,9 @@ TEST_CASE("Four columns at once come out as one after the other, to round-off", 
     CHECK(q_of(one[1].stress) > 0.0);
 }
 
-TEST_CASE("A damaged column keeps a stress that grains can bear", "[structured]") {
-    const ColumnLaw law(unbroken_clay(30.0));
-    ColumnState state;
+TEST_CASE("A damaged particle keeps a stress that grains can bear", "[structured]") {
+    const StructuredLaw law(unbroken_clay(30.0));
+    StructuredState state;
     state.damage = 1.0;
     state = strained(law, 100, {1e-4, 2e-5, 3e-5, 1e-3}, 0.0, 1e4, state);
     CHECK(std::abs(state.stress.xx) < 1e-3);  // no weight, no cohesion: nothing
@@ -334,9 +336,9 @@ TEST_CASE("A damaged column keeps a stress that grains can bear", "[structured]"
 }
 
 TEST_CASE("What a call costs", "[.cost]") {
-    const auto measure = [](const ColumnLaw& law, double size, const char* what) {
+    const auto measure = [](const StructuredLaw& law, double size, const char* what) {
         constexpr int kCalls = 2000000;
-        ColumnStateOf<Double4> state;
+        StructuredStateOf<Double4> state;
         state.stress.zz = all(-1e3);
         const auto start = std::chrono::steady_clock::now();
         for (int n = 0; n < kCalls / 4; ++n) {
@@ -344,11 +346,11 @@ TEST_CASE("What a call costs", "[.cost]") {
             law.update({all(d), all(0.3 * d), all(0.5 * d), all(1e-4)}, all(-1e3), all(2e4), state);
         }
         const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-        fmt::print("{}: {:.1f} ns a column, xx {:.3g} Pa\n", what, 1e9 * time.count() / kCalls,
+        fmt::print("{}: {:.1f} ns a particle, xx {:.3g} Pa\n", what, 1e9 * time.count() / kCalls,
                    double{state.stress.xx[0]});
         CHECK(time.count() > 0.0);
     };
-    measure(ColumnLaw(unbroken_clay(28.0)), 1e-6, "elastic");
-    measure(ColumnLaw(unbroken_clay(28.0)), 1e-3, "yielding, cone");
-    measure(ColumnLaw(unbroken_clay(28.0, ColumnYield::hexagon)), 1e-3, "yielding, pyramid");
+    measure(StructuredLaw(unbroken_clay(28.0)), 1e-6, "elastic");
+    measure(StructuredLaw(unbroken_clay(28.0)), 1e-3, "yielding, cone");
+    measure(StructuredLaw(unbroken_clay(28.0, StructuredYield::hexagon)), 1e-3, "yielding, pyramid");
 }

@@ -20,7 +20,7 @@ struct Crowd {
     explicit Crowd(const Scene& scene, unsigned seed) : flow(scene) {
         std::mt19937 random(seed);
         const auto between = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
-        Columns& c = flow.columns;
+        Particles& c = flow.particles;
         c.resize(3001);
         for (Index p = 0; p < c.count(); ++p) {
             c.x[p] = p % 50 == 0 ? 0.0 : between(0.0, kNodesX - 1.0);
@@ -69,11 +69,11 @@ void compare_nodes(Flow& a, Flow& b) {
 
 void compare_points(Flow& a, Flow& b) {
     std::vector<std::vector<double>> of_b;
-    b.columns.each([&](const auto& column) { of_b.emplace_back(column.begin(), column.end()); });
+    b.particles.each([&](const auto& array) { of_b.emplace_back(array.begin(), array.end()); });
     std::size_t field = 0;
-    a.columns.each([&](const auto& column) {
-        for (std::size_t p = 0; p < column.size(); ++p)
-            check_close(column[p], of_b[field][p], 5e3, "field", static_cast<Index>(field));
+    a.particles.each([&](const auto& array) {
+        for (std::size_t p = 0; p < array.size(); ++p)
+            check_close(array[p], of_b[field][p], 5e3, "field", static_cast<Index>(field));
         ++field;
     });
 }
@@ -177,7 +177,7 @@ TEST_CASE("What a hole's wall sets back counts in how far points came", "[transf
     OnTheirWay points(scene, GENERATE(false, true));
     REQUIRE(scene.holes.nodes.size() == 1);
     const auto& transfer = points.transfer;
-    const Columns& c = points.crowd.flow.columns;
+    const Particles& c = points.crowd.flow.particles;
     const std::vector<double> x(c.x.begin(), c.x.end()), y(c.y.begin(), c.y.end());
     const double longest = transfer->gather(points.crowd.flow, 1e-3).max_shift;
     double came = 0.0;
@@ -193,7 +193,7 @@ TEST_CASE("A long step leads over no wall of one pixel", "[transfer][holes]") {
     wall_holes(scene);
     OnTheirWay points(scene, GENERATE(false, true));
     const auto& transfer = points.transfer;
-    const Columns& c = points.crowd.flow.columns;
+    const Particles& c = points.crowd.flow.particles;
     const std::vector<double> x(c.x.begin(), c.x.end());
     const auto side_of = [](double place) { return place < 19.5 ? -1 : place > 20.5 ? 1 : 0; };
     CHECK(transfer->gather(points.crowd.flow, 0.8).max_shift > 1.1);

@@ -16,7 +16,7 @@ Scene plane() {
 
 /// Some points away from the sides, with velocities of their own.
 void add_points(Flow& flow) {
-    Columns& c = flow.columns;
+    Particles& c = flow.particles;
     c.resize(7);
     for (Index p = 0; p < c.count(); ++p) {
         const double n = static_cast<double>(p);
@@ -67,14 +67,14 @@ TEST_CASE("Every transfer shifts points by the slope of a two-cell wave", "[tran
     Flow flow(scene);
     add_points(flow);
     set_nodes(flow);
-    const std::vector<double> x(flow.columns.x.begin(), flow.columns.x.end()),
-        y(flow.columns.y.begin(), flow.columns.y.end());
+    const std::vector<double> x(flow.particles.x.begin(), flow.particles.x.end()),
+        y(flow.particles.y.begin(), flow.particles.y.end());
     (packed ? make_packed_transfer(scene) : make_plain_transfer(scene))->gather(flow, 0.1);
     for (std::size_t p = 0; p < x.size(); ++p) {
         const double dx = 0.05 * kAfter.vx(2.0 * x[p], 2.0 * y[p]), dy = 0.05 * kAfter.vy(2.0 * x[p], 2.0 * y[p]);
         const double way = std::hypot(dx, dy);
-        CHECK(flow.columns.x[p] == Approx(x[p] + dx - 0.7 * kWaveX * way).epsilon(kRoundOff));
-        CHECK(flow.columns.y[p] == Approx(y[p] + dy + 0.5 * way).epsilon(kRoundOff));  // the most that is allowed
+        CHECK(flow.particles.x[p] == Approx(x[p] + dx - 0.7 * kWaveX * way).epsilon(kRoundOff));
+        CHECK(flow.particles.y[p] == Approx(y[p] + dy + 0.5 * way).epsilon(kRoundOff));  // the most that is allowed
     }
 }
 
@@ -92,7 +92,7 @@ TEST_CASE("Every transfer gathers a linear velocity and its gradient exactly", "
     TransferKernel::Probe seen;
     make_plain_transfer(scene)->probe(flow, seen);
     const double keep = transfer == Transfer::flip ? scene.scheme.flip_ratio : 0.0;
-    const Columns& c = flow.columns;
+    const Particles& c = flow.particles;
     for (std::size_t p = 0; p < seen.vx.size(); ++p) {
         const double x = 2.0 * c.x[p], y = 2.0 * c.y[p];
         // FLIP adds what forces changed on the nodes to the point's own velocity, leaves what friction left of the nodes',
@@ -114,7 +114,7 @@ TEST_CASE("The paper's pressure is g m h / 2 and its weight g m grad Z", "[trans
     Flow flow(scene);
     add_points(flow);
     make_plain_transfer(scene)->deposit(flow, 0.1);
-    const Columns& c = flow.columns;
+    const Particles& c = flow.particles;
     double fx = 0.0, fy = 0.0, fx_x = 0.0, fy_y = 0.0;  // sums of the nodes' forces, and of their moments about (0, 0)
     for (const Index tile : flow.active.work)
         for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
@@ -145,10 +145,10 @@ TEST_CASE("The paper's depth thins by the divergence of the velocity (eq. 30)", 
     const auto transfer = make_plain_transfer(scene);
     transfer->deposit(flow, 0.1);
     set_nodes(flow);
-    const Columns before = flow.columns;
+    const Particles before = flow.particles;
     transfer->gather(flow, 0.1);
     for (Index p = 0; p < before.count(); ++p)
-        CHECK(flow.columns.depth[p] == Approx(before.depth[p] / (1.0 + 0.1 * (0.11 + 0.03))).epsilon(kRoundOff));
+        CHECK(flow.particles.depth[p] == Approx(before.depth[p] / (1.0 + 0.1 * (0.11 + 0.03))).epsilon(kRoundOff));
 }
 
 TEST_CASE("On 45 degrees a Bingham sheet shears twice as fast as speed and depth of the map say", "[transfer]") {

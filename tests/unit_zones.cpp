@@ -139,7 +139,7 @@ TEST_CASE("A layer holds where the friction of its zone holds it, asleep or not,
             by_place<bed::Coulomb>(scene, [](double x, double) { return bed::Coulomb{x < 85.0 ? 0.55 : 0.2}; });
         DepthAveraged simulation(scene);
         run_to(simulation, 4.0);
-        const Columns& c = simulation.flow().columns;
+        const Particles& c = simulation.flow().particles;
         double held = 0.0, slid = INFINITY;
         for (Index p = 0; p < c.count(); ++p) {
             const auto first = static_cast<std::size_t>(c.id[p]);

@@ -91,12 +91,12 @@ TEST_CASE("A pile below its friction angle does not move by one bit", "[rest]") 
             scene.bed_law = bed::Coulomb{pile.mu};
             frana::test::fill(scene, [&](double x, double y) { return 4 - pile.surface * std::hypot(x - 30, y - 30); });
             DepthAveraged simulation(scene);
-            const Columns before = simulation.flow().columns;
+            const Particles before = simulation.flow().particles;
             run_to(simulation, 5.0);
             CAPTURE(pile.slope, turn);
             CHECK(simulation.status().max_speed_on_map == 0.0);
-            CHECK(simulation.flow().columns.x == before.x);
-            CHECK(simulation.flow().columns.y == before.y);
+            CHECK(simulation.flow().particles.x == before.x);
+            CHECK(simulation.flow().particles.y == before.y);
             RestRule rule(1.0, 0.05);
             rule.note(simulation);
             CHECK(rule.at_rest());

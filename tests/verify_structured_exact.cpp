@@ -1,4 +1,5 @@
-// Columns of structured solids against closed forms: the push of grains (V16), and what would be the tensile instability (V18).
+// Particles of structured solids against closed forms: the push of grains (V16), and what would be the tensile
+// instability (V18).
 #include <cmath>
 
 #include "base/constants.h"
@@ -45,9 +46,9 @@ StructuredScene heap(const GridGeometry& grid, double length, const std::functio
     s.material.friction = 30.0 * constants::kPi / 180.0;
     const double side = 4.0 * grid.cell, spacing = 0.5 * grid.cell;
     verify::add_channel(s, 0.0, side);
-    const int columns = static_cast<int>(std::lround(2.0 * length / spacing));
+    const int particles = static_cast<int>(std::lround(2.0 * length / spacing));
     for (int j = 0; j < 8; ++j)
-        for (int i = 0; i < columns; ++i) {
+        for (int i = 0; i < particles; ++i) {
             const double x = -length + (i + 0.5) * spacing, h = depth(x);
             s.points.add({x, (j + 0.5) * spacing, 0.0, 0.0, s.density * h * spacing * spacing, h, 0.0, 1.0});
         }
@@ -122,7 +123,7 @@ TEST_CASE("V16: a vertical face below Bell's height has no pressure, a higher on
     constexpr double kDepth = 1.0, kWidth = 1.0, kEnd = 0.2;
     const double ratio = GENERATE(1.05, 0.5, 0.05);  // of Bell's height 4 c / (rho g sqrt(Ka)) over the block's
     StructuredScene s;
-    s.grid = verify::grid_over({0, 0}, {4, kWidth}, 0.125);  // binary: what columns weigh has no round-off
+    s.grid = verify::grid_over({0, 0}, {4, kWidth}, 0.125);  // binary: what particles weigh has no round-off
     s.material.young = 1e6;
     s.material.friction = 30.0 * constants::kPi / 180.0;
     s.material.critical_strain = 1e9;  // it yields, but keeps its cohesion
@@ -130,7 +131,7 @@ TEST_CASE("V16: a vertical face below Bell's height has no pressure, a higher on
     Obstacle face, end;
     face.high.x() = 0.0;
     s.obstacles.push_back(face);
-    const double active = ColumnLaw(s.material).active();
+    const double active = StructuredLaw(s.material).active();
     const double cohesion = ratio * kDepth * s.density * kGravity * std::sqrt(active) / 4.0;
     verify::add_block(s, {{0, 0}, {3, kWidth}, kDepth, cohesion});
     StructuredFlow flow(s);
@@ -150,10 +151,12 @@ TEST_CASE("V16: a vertical face below Bell's height has no pressure, a higher on
     }
 }
 
-TEST_CASE("V18: columns drawn apart stay as evenly spaced as before, without artificial stress, whichever way they lie",
-          "[structured]") {
-    // A bar 12 m long is drawn out by a fifth. Its free ends send waves inwards, 2.5 m/s for a second; between them columns
-    // go with the strain, and a tensile instability would grow at about sqrt(strain) c / spacing, 16 / s: a millionfold.
+TEST_CASE(
+    "V18: particles drawn apart stay as evenly spaced as before, without artificial stress, whichever way they lie",
+    "[structured]") {
+    // A bar 12 m long is drawn out by a fifth. Its free ends send waves inwards, 2.5 m/s for a second; between them
+    // particles go with the strain, and a tensile instability would grow at about sqrt(strain) c / spacing, 16 / s: a
+    // millionfold.
     constexpr double kRate = 0.2, kEnd = 1.0, kSpacing = 0.05;
     const double angle = GENERATE(0.0, 30.0, 45.0) * constants::kPi / 180.0;
     const Vec2 along(std::cos(angle), std::sin(angle)), side(-along.y(), along.x());
@@ -187,6 +190,6 @@ TEST_CASE("V18: columns drawn apart stay as evenly spaced as before, without art
     CAPTURE(angle, strain, apart / kSpacing, least);
     CHECK(least > 0.1 * s.material.young);  // all of it is under tension
     CHECK(apart <
-          0.07 * kSpacing);  // twice the 0.035 of the bar along the grid, where rows of columns pass nodes at once
+          0.07 * kSpacing);  // twice the 0.035 of the bar along the grid, where rows of particles pass nodes at once
     CHECK(neighbours.torn(flow, 3.0 * kSpacing).all == 0);
 }

@@ -107,10 +107,27 @@ instead(SAY "at_front, of the wet-dry front" CODE PARTS rim ROOMS ${models})
 instead(SAY "a step in the bed" CODE PARTS bank banks ROOMS src/ NOT_IN src/compare/flow_width)
 instead(SAY "intact, fragmented" CODE PARTS whole broken ROOMS src/structured/ NOT_IN src/structured/structured_serialize)
 instead(SAY "2D to 3D, or 3D to 2D conversion" CODE TEXTS "hand_over" "handed" "take_back($|[^_])")
-instead(SAY "Mpm3d, or a name with 3d" CODE TEXTS "SolidFlow" "[a-z]?Space[A-Z]" "kSpace" "in_space")
+instead(SAY "Mpm3d, or a name with 3d" CODE TEXTS "SolidFlow" "solid_flow" "[a-z]?Space[A-Z]" "kSpace" "in_space")
+instead(SAY "fuzz" CODE TEXTS "(^|[^a-zA-Z_])stress::" "namespace [a-z:]*stress($|[^a-zA-Z_])" "Stress(Options|Plan)" "frana_stress"
+        ROOMS src/ apps/ tests/)
 instead(SAY "Array" CODE TEXTS "(^|[^a-zA-Z_])(Column|ColumnOf)($|[^a-zA-Z_])"
         ROOMS src/base/ src/mpm/ src/shallow/ src/solid3d/ src/structured/)
 instead(SAY "constants::kPi" CODE TEXTS "M_PI")
+# Depth-averaged points are particles. Columns are those of tables, rasters and matrices, and of material that stands.
+instead(SAY "particles; Array of many numbers" TEXTS "[cC]olumns"
+        ROOMS ${models} src/convert/ src/checks/fuzz/ src/checks/bench/ src/scene/ src/run/simulation src/run/folder/run_state
+        NOT_IN src/shallow/bed_geometry src/shallow/surface src/mpm/on_storage src/water/water_kernel src/water/water_block
+               src/checks/bench/blob src/scene/inflow_table)
+instead(SAY "Particle, Structured or Array" TEXTS "[a-z]Column" "Column[A-Z]" "columns?_(of|to|at|watch)" "(to|of|with|all|same)_columns"
+        ROOMS ${models} src/convert/ src/scene/ src/run/simulation src/run/folder/run_state src/checks/fuzz/ src/checks/bench/
+        NOT_IN src/shallow/bed_geometry src/scene/inflow_table)
+instead(SAY "particle" TEXTS "(^|[^a-zA-Z_])[cC]olumn($|[^a-zA-Z_])"
+        ROOMS src/structured/ src/coupling/ src/convert/ src/law/ src/run/folder/run_state
+        NOT_IN src/coupling/open_share src/coupling/solid_scene.cpp src/convert/flow_particles.h src/law/sym3)
+file(STRINGS ${ROOT}/cases/KEYS.md found REGEX "[cC]olumns")
+if(found)
+  message(SEND_ERROR "cases/KEYS.md: found '${found}'; say particles")
+endif()
 # What a figure comes from has to be there for a reader: sources of expected figures and of gates, and the pages.
 file(GLOB_RECURSE told ${ROOT}/cases/*.csv ${ROOT}/cases/*.md ${ROOT}/src/*.md ${ROOT}/src/*.cpp ${ROOT}/src/*.h)
 list(FILTER told EXCLUDE REGEX "/data/")

@@ -39,7 +39,7 @@ std::vector<std::uint8_t> cells_within(const Frame& frame, const std::string& fi
 std::unique_ptr<InsituWork> make_cell_threshold(const std::filesystem::path& folder, const std::string& name,
                                                 const std::string& field, const Interval& kept);
 
-/// Particles whose field is within the interval, with all their columns: `name`_NNNNNN.vtp (vtkPolyData, one vertex a
+/// Particles whose field is within the interval, with all their arrays: `name`_NNNNNN.vtp (vtkPolyData, one vertex a
 /// particle).
 std::unique_ptr<InsituWork> make_particle_threshold(const std::filesystem::path& folder, const std::string& name,
                                                     const std::string& field, const Interval& kept);

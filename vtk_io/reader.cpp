@@ -52,15 +52,15 @@ std::vector<double> numbers_of(vtkDataArray* array) {
     return numbers;
 }
 
-/// Columns and units, whatever there is; `Loaded` names them as members `components` and `units`.
+/// Arrays and units, whatever there is; `Loaded` names them as members `components` and `units`.
 template <class Loaded>
-void take_columns(vtkDataSet* data, Loaded& loaded, std::map<std::string, std::vector<double>>& columns) {
+void take_arrays(vtkDataSet* data, Loaded& loaded, std::map<std::string, std::vector<double>>& into) {
     vtkPointData* arrays = data->GetPointData();
     for (int k = 0; k < arrays->GetNumberOfArrays(); ++k) {
         vtkDataArray* array = arrays->GetArray(k);
         if (!array || !array->GetName() || array->GetName() == std::string(vtkDataSetAttributes::GhostArrayName()))
             continue;
-        columns[array->GetName()] = numbers_of(array);
+        into[array->GetName()] = numbers_of(array);
         loaded.components[array->GetName()] = array->GetNumberOfComponents();
     }
     const std::string tail = "_unit";
@@ -79,7 +79,7 @@ LoadedFrame frame_of(vtkImageData* image) {
     image->GetDimensions(dimensions);
     const double* origin = image->GetOrigin();
     frame.grid = {dimensions[0], dimensions[1], origin[0], origin[1], image->GetSpacing()[0]};
-    take_columns(image, frame, frame.nodes);
+    take_arrays(image, frame, frame.nodes);
     if (frame.has("elevation") && frame.has("outside")) {
         auto& elevation = frame.nodes["elevation"];
         const auto& outside = frame.nodes["outside"];
@@ -93,12 +93,12 @@ LoadedFrame read_image(const std::filesystem::path& file, const std::vector<std:
     vtkNew<vtkXMLImageDataReader> reader;
     std::vector<std::string> names;
     read_file(reader, file, [&] {
-        vtkDataArraySelection* const columns = reader->GetPointDataArraySelection();
-        for (int k = 0; k < columns->GetNumberOfArrays(); ++k) {
-            const std::string& name = names.emplace_back(columns->GetArrayName(k));
+        vtkDataArraySelection* const arrays = reader->GetPointDataArraySelection();
+        for (int k = 0; k < arrays->GetNumberOfArrays(); ++k) {
+            const std::string& name = names.emplace_back(arrays->GetArrayName(k));
             const bool wanted = only.empty() || name == "elevation" || name == "outside" ||
                                 std::find(only.begin(), only.end(), name) != only.end();
-            columns->SetArraySetting(name.c_str(), wanted ? 1 : 0);
+            arrays->SetArraySetting(name.c_str(), wanted ? 1 : 0);
         }
     });
     LoadedFrame frame = frame_of(reader->GetOutput());
@@ -153,11 +153,11 @@ LoadedParticles read_particles(const std::filesystem::path& run_dir, Index numbe
     particles.number = position;
     particles.time = entry.time;
     particles.count = points->GetNumberOfPoints();
-    take_columns(points, particles, particles.columns);
+    take_arrays(points, particles, particles.arrays);
     if (particles.count > 0)
-        particles.columns["position"] = numbers_of(points->GetPoints()->GetData());
+        particles.arrays["position"] = numbers_of(points->GetPoints()->GetData());
     else
-        particles.columns["position"] = {};
+        particles.arrays["position"] = {};
     particles.components["position"] = 3;
     return particles;
 }

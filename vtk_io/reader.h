@@ -13,7 +13,7 @@
 
 namespace frana {
 
-/// Node columns of one output frame, as stored (float32 precision).
+/// Node arrays of one output frame, as stored (float32 precision).
 struct LoadedFrame {
     Index number = 0;   ///< 0, 1, 2, ... position in grid.pvd
     double time = 0.0;  ///< [s]
@@ -24,17 +24,17 @@ struct LoadedFrame {
     std::map<std::string, std::vector<double>> nodes;
     std::map<std::string, int> components;
     std::map<std::string, std::string> units;
-    std::vector<std::string> names;  ///< of all columns in the file, read or not
+    std::vector<std::string> names;  ///< of all arrays in the file, read or not
 
     bool has(const std::string& name) const { return nodes.count(name) != 0; }
 };
 
-/// Particle columns of one output frame; "position" holds x, y, z.
+/// Particle arrays of one output frame; "position" holds x, y, z.
 struct LoadedParticles {
     Index number = 0;
     double time = 0.0;
     Index count = 0;
-    std::map<std::string, std::vector<double>> columns;  ///< count * components numbers, interleaved
+    std::map<std::string, std::vector<double>> arrays;  ///< count * components numbers, interleaved
     std::map<std::string, int> components;
     std::map<std::string, std::string> units;
 };
@@ -50,7 +50,7 @@ Index nearest_frame(const std::filesystem::path& run_dir, double time);
 
 /// Frame `number` of RUN_DIR/grid.pvd; negative counts from the end (-1 is the last one).
 /// Throws UserError when there is no such frame or its file cannot be read.
-/// With names in `only`, the columns of these names alone, the elevation and where the terrain ends.
+/// With names in `only`, the arrays of these names alone, the elevation and where the terrain ends.
 LoadedFrame read_frame(const std::filesystem::path& run_dir, Index number, const std::vector<std::string>& only = {});
 
 /// The same frame of RUN_DIR/particles.pvd.

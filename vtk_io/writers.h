@@ -21,8 +21,8 @@
 namespace frana {
 
 /// particles.pvd and particles/particles_NNNNNN.vtp: vtkPolyData, points in double at "position", one vertex
-/// cell a particle. Every other particle column is an array. observe() throws UserError when a file cannot be written
-/// (path and reason), NumericsError for a number that is not finite.
+/// cell a particle. Every other field of particles is an array. observe() throws UserError when a file cannot be
+/// written (path and reason), NumericsError for a number that is not finite.
 std::unique_ptr<Observer> make_particle_writer(const std::filesystem::path& run_dir);
 
 /// grid.pvd and grid/grid_NNNNNN.vti: vtkImageData of one layer, point data at the nodes (z = 0). Errors as

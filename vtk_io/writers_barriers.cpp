@@ -142,7 +142,7 @@ private:
 
     PvdSeries series_;
     std::vector<BarrierTop> tops_;
-    Raster bed_;  ///< without barriers, which a frame's elevation may have where columns meet them
+    Raster bed_;  ///< without barriers, which a frame's elevation may have where particles meet them
     double time_ = 0.0;
     std::vector<double> before_, peak_;  ///< per patch: impulse across the face [kg m/s]; largest mean [Pa]
 };

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "base/error.h"
-#include "observe/file_columns.h"
+#include "observe/file_arrays.h"
 #include "vtk_io/writers_xml.h"
 
 namespace frana {
@@ -38,7 +38,7 @@ vtkSmartPointer<vtkPolyData> cloud_of(const Frame& frame) {
     cloud->SetPoints(points);
     cloud->SetVerts(one_vertex_each(position->count));
     for (const Field& field : frame.particles) {
-        expect(field.count == position->count, "particle columns differ in length");
+        expect(field.count == position->count, "particle arrays differ in length");
         add_unit(cloud->GetFieldData(), field.name, field.unit);
         if (&field != position) cloud->GetPointData()->AddArray(to_vtk(field, {}));
     }
@@ -50,7 +50,7 @@ vtkSmartPointer<vtkImageData> image_of(const Frame& frame) {
     const auto outside = outside_nodes(frame);
     auto image = image_of(frame.grid);
     for (const Field& field : frame.nodes) {
-        expect(field.count == frame.grid.size(), "a node column is not as long as the grid");
+        expect(field.count == frame.grid.size(), "a node array is not as long as the grid");
         add_unit(image->GetFieldData(), field.name, field.unit);
         image->GetPointData()->AddArray(to_vtk(field, outside));
     }

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/constants.h"
-#include "observe/file_columns.h"
+#include "observe/file_arrays.h"
 #include "vtk_io/hillshade.h"
 #include "vtk_io/writers.h"
 #include "vtk_io/writers_xml.h"

@@ -14,7 +14,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "observe/file_columns.h"
+#include "observe/file_arrays.h"
 
 namespace frana {
 namespace {
@@ -24,13 +24,13 @@ vtkSmartPointer<vtkDataArray> filled(const Field& field, const std::vector<std::
     auto array = vtkSmartPointer<Array>::New();
     array->SetNumberOfComponents(field.components);
     array->SetNumberOfTuples(field.count);
-    copy_column(field, outside, array->GetPointer(0));
+    copy_array(field, outside, array->GetPointer(0));
     return array;
 }
 
 vtkSmartPointer<vtkDataArray> ids(const Field& field, const std::vector<std::uint8_t>& outside) {
     std::vector<std::int64_t> values(static_cast<std::size_t>(field.count * field.components));
-    copy_column(field, outside, values.data());
+    copy_array(field, outside, values.data());
     auto array = vtkSmartPointer<vtkTypeInt64Array>::New();
     array->SetNumberOfComponents(field.components);
     array->SetNumberOfTuples(field.count);

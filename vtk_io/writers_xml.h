@@ -18,7 +18,7 @@
 
 namespace frana {
 
-/// The column as a VTK array in its storage type (observe/file_columns.h), with name and component names.
+/// The field as a VTK array in its storage type (observe/file_arrays.h), with name and component names.
 vtkSmartPointer<vtkDataArray> to_vtk(const Field& field, const std::vector<std::uint8_t>& outside);
 
 /// Adds `name_unit` to the field data.
@@ -33,11 +33,11 @@ vtkSmartPointer<vtkImageData> image_of(const GridGeometry& grid);
 /// Adds `outside`, and HIDDENPOINT where it is 1 (why both: writers.h); nothing when it is empty.
 void hide_nodes(vtkImageData* image, const std::vector<std::uint8_t>& outside);
 
-/// The particles: points in double at "position", one vertex cell each, every other column as an array. They have units
+/// The particles: points in double at "position", one vertex cell each, every other field as an array. They have units
 /// and the time (writers_frame.cpp).
 vtkSmartPointer<vtkPolyData> cloud_of(const Frame& frame);
 
-/// The nodes with all their columns, units and the time; nodes without terrain are hidden (writers_frame.cpp).
+/// The nodes with all their arrays, units and the time; nodes without terrain are hidden (writers_frame.cpp).
 vtkSmartPointer<vtkImageData> image_of(const Frame& frame);
 
 /// Writes atomically, LZ4 in inline base64. Throws UserError with path and reason.

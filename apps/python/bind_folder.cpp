@@ -28,10 +28,10 @@ py::tuple north_up(const Raster& raster) {
 
 namespace {
 
-py::dict columns_of(std::map<std::string, std::vector<double>>& columns, const std::map<std::string, int>& components,
-                    const std::map<std::string, std::string>& units, const std::vector<py::ssize_t>& shape) {
+py::dict arrays_of(std::map<std::string, std::vector<double>>& arrays, const std::map<std::string, int>& components,
+                   const std::map<std::string, std::string>& units, const std::vector<py::ssize_t>& shape) {
     py::dict all;
-    for (auto& [name, numbers] : columns) {
+    for (auto& [name, numbers] : arrays) {
         std::vector<py::ssize_t> of = shape;
         const auto several = components.find(name);
         if (several != components.end() && several->second > 1) of.push_back(several->second);
@@ -46,12 +46,12 @@ py::tuple grid_frame(const std::string& dir, Index number) {
     LoadedFrame frame = aside([&] { return read_frame(dir, number); });
     const GridGeometry& g = frame.grid;
     return py::make_tuple(frame.time, py::make_tuple(g.nx, g.ny, g.x0, g.y0, g.cell),
-                          columns_of(frame.nodes, frame.components, frame.units, {g.ny, g.nx}));
+                          arrays_of(frame.nodes, frame.components, frame.units, {g.ny, g.nx}));
 }
 
 py::tuple particle_frame(const std::string& dir, Index number) {
     LoadedParticles frame = aside([&] { return read_particles(dir, number); });
-    return py::make_tuple(frame.time, columns_of(frame.columns, frame.components, frame.units, {frame.count}));
+    return py::make_tuple(frame.time, arrays_of(frame.arrays, frame.components, frame.units, {frame.count}));
 }
 
 /// Of a run's rasters or, before there are some, of its terrain. A terrain that has gone tells nothing.

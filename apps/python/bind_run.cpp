@@ -129,7 +129,7 @@ public:
         const Simulation* const simulation = standing().simulation();
         if (!simulation || session_->status().time >= session_->planned_end())
             throw std::runtime_error("the run is at its end; add mass before, or give a later time.end");
-        Seeds columns;
+        Seeds particles;
         for (py::ssize_t n = 0; n < x.size(); ++n) {
             if (!(size.at(n) <= kMostCells * session_->cell()))
                 throw py::value_error(
@@ -137,10 +137,11 @@ public:
                                 size.at(n), kMostCells, session_->cell()));
         }
         for (py::ssize_t n = 0; n < x.size(); ++n)
-            add_square(columns, {x.at(n), y.at(n)}, {vx.at(n), vy.at(n)}, mass.at(n) / session_->density(), size.at(n));
-        const std::string why_not = simulation->why_not_add(columns);
+            add_square(particles, {x.at(n), y.at(n)}, {vx.at(n), vy.at(n)}, mass.at(n) / session_->density(),
+                       size.at(n));
+        const std::string why_not = simulation->why_not_add(particles);
         if (!why_not.empty()) throw UserError("add_mass: " + why_not);
-        session_->add(columns);
+        session_->add(particles);
     }
     /// As it is now, north row first, read-only.
     py::tuple bed() {
@@ -175,21 +176,22 @@ public:
     }
 
 private:
-    static constexpr double kMostCells = 200.0;  ///< across a square that is added: 160 000 columns
+    static constexpr double kMostCells = 200.0;  ///< across a square that is added: 160 000 particles
 
-    /// A square of material [m3] as columns of at most half a cell each, as releases have them.
-    void add_square(Seeds& columns, const Vec2& middle, const Vec2& velocity, double volume, double given_size) const {
+    /// A square of material [m3] as particles of at most half a cell each, as releases have them.
+    void add_square(Seeds& particles, const Vec2& middle, const Vec2& velocity, double volume,
+                    double given_size) const {
         const double half_cell = 0.5 * session_->cell(), size = given_size > 0.0 ? given_size : half_cell;
         const auto count = std::max(Index{1}, static_cast<Index>(std::ceil(size / half_cell - 1e-9)));
         const double edge = size / static_cast<double>(count);
         for (Index j = 0; j < count; ++j)
             for (Index i = 0; i < count; ++i) {
-                columns.x.push_back(middle.x() - 0.5 * size + (static_cast<double>(i) + 0.5) * edge);
-                columns.y.push_back(middle.y() - 0.5 * size + (static_cast<double>(j) + 0.5) * edge);
-                columns.vx.push_back(velocity.x()), columns.vy.push_back(velocity.y());
-                columns.volume.push_back(volume / static_cast<double>(count * count));
-                columns.depth.push_back(volume / (size * size));
-                columns.size.push_back(edge);
+                particles.x.push_back(middle.x() - 0.5 * size + (static_cast<double>(i) + 0.5) * edge);
+                particles.y.push_back(middle.y() - 0.5 * size + (static_cast<double>(j) + 0.5) * edge);
+                particles.vx.push_back(velocity.x()), particles.vy.push_back(velocity.y());
+                particles.volume.push_back(volume / static_cast<double>(count * count));
+                particles.depth.push_back(volume / (size * size));
+                particles.size.push_back(edge);
             }
     }
 

@@ -54,7 +54,7 @@ public:
     /// Requests an end, without any more stands.
     void end();
     /// Material that enters with the next step, while it stands.
-    void add(const Seeds& columns) { added_.append(columns, 0, columns.count()); }
+    void add(const Seeds& particles) { added_.append(particles, 0, particles.count()); }
     /// Whether it stands, or came to stand within the time.
     bool wait(std::chrono::milliseconds time);
 

@@ -45,9 +45,9 @@ double bed_near(const Raster& bed, Index pixel, double x, double y) {
     return std::isfinite(z) ? z : bed.values[static_cast<std::size_t>(pixel)];
 }
 
-void add_column(GatheredFlow& flow, Index pixel, const Bin& bin, const Raster& bed) {
+void add_particle(GatheredFlow& flow, Index pixel, const Bin& bin, const Raster& bed) {
     const GridGeometry& g = bed.geometry;
-    FlowColumns& c = flow.columns;
+    FlowParticles& c = flow.particles;
     const double mass = bin.mass.value(), volume = bin.volume.value();
     const double x = g.x(pixel % g.nx) + bin.place[0].value() / mass,
                  y = g.y(pixel / g.nx) + bin.place[1].value() / mass;
@@ -69,7 +69,7 @@ void add_column(GatheredFlow& flow, Index pixel, const Bin& bin, const Raster& b
 
 }  // namespace
 
-GatheredFlow points_to_columns(const SolidPoints& points, const Raster& bed) {
+GatheredFlow points_to_particles(const SolidPoints& points, const Raster& bed) {
     GatheredFlow flow;
     std::map<Index, Bin> bins;  // in the order of the pixels
     CompensatedSum lost;
@@ -84,8 +84,8 @@ GatheredFlow points_to_columns(const SolidPoints& points, const Raster& bed) {
         add_point(bins[pixel], points, k, g.x(pixel % g.nx), g.y(pixel / g.nx));
     }
     flow.mass_outside = lost.value();
-    for (const auto& [pixel, bin] : bins) add_column(flow, pixel, bin, bed);
-    take_slopes(flow.columns, bed);
+    for (const auto& [pixel, bin] : bins) add_particle(flow, pixel, bin, bed);
+    take_slopes(flow.particles, bed);
     return flow;
 }
 
@@ -97,11 +97,11 @@ FlowRasters rasters_of(const GatheredFlow& flow, const Raster& bed) {
         for (std::size_t k = 0; k < bed.values.size(); ++k)
             if (std::isnan(bed.values[k])) raster->values[k] = Raster::nodata;
     }
-    for (std::size_t p = 0; p < flow.columns.count(); ++p) {
+    for (std::size_t p = 0; p < flow.particles.count(); ++p) {
         const auto k = static_cast<std::size_t>(flow.pixel[p]);
-        rasters.depth.values[k] = flow.columns.depth[p];
-        rasters.velocity_x.values[k] = flow.columns.vx[p];
-        rasters.velocity_y.values[k] = flow.columns.vy[p];
+        rasters.depth.values[k] = flow.particles.depth[p];
+        rasters.velocity_x.values[k] = flow.particles.vx[p];
+        rasters.velocity_y.values[k] = flow.particles.vy[p];
     }
     return rasters;
 }

@@ -8,8 +8,8 @@
 
 namespace frana {
 
-/// What the measures need of a column.
-struct ErrorColumn {
+/// What the measures need of a particle.
+struct ErrorParticle {
     double depth = 0.0, mass = 0.0, volume = 0.0, momentum = 0.0;
 };
 
@@ -26,9 +26,9 @@ struct ExactTotals {
     double momentum = 0.0;  ///< along x [kg m/s]
 };
 
-/// Of plug-flow points that columns_to_points() would make, found column by column. Their number may be beyond any
-/// memory (the paper's finest has 1e12). `column` is called twice for each index.
-ConversionErrors conversion_errors(Index columns, const std::function<ErrorColumn(Index)>& column, double spacing,
+/// Of plug-flow points that particles_to_points() would make, found particle by particle. Their number may be beyond
+/// any memory (the paper's finest has 1e12). `particle` is called twice for each index.
+ConversionErrors conversion_errors(Index particles, const std::function<ErrorParticle(Index)>& particle, double spacing,
                                    const ExactTotals& exact);
 
 /// The same from the points themselves.

@@ -1,5 +1,5 @@
 #pragma once
-// How a column's material is laid out in layers, and how fast each layer goes.
+// How a particle's material is laid out in layers, and how fast each layer goes.
 #include <string>
 #include <vector>
 
@@ -22,14 +22,14 @@ double profile_value(VelocityProfile profile, double s);
 /// Depth mean of the squared profile: 1, 4/3, 6/5, 5/4 [1]. By so much the kinetic energy is above m |mean v|^2 / 2.
 double exact_energy_factor(VelocityProfile profile);
 
-/// Number of layers of a column (Fois et al. 2025, eq. 1): floor(depth / spacing), at least 1. A part in 1e7 is
+/// Number of layers of a particle (Fois et al. 2025, eq. 1): floor(depth / spacing), at least 1. A part in 1e7 is
 /// tolerated. Frames hold depths with 7 digits, and 0.3 / 0.1 is below 3 in binary numbers. Not above 1e18.
 Index layer_count(double depth, double spacing);
 
 /// Relative heights s of `count` layers, from below [1].
 std::vector<double> layer_heights(Layers layers, Index count);
 
-/// The profile at these heights, divided by its mean over them. Layers of equal mass then carry the column's momentum
+/// The profile at these heights, divided by its mean over them. Layers of equal mass then carry the particle's momentum
 /// whatever their number.
 std::vector<double> layer_speeds(VelocityProfile profile, const std::vector<double>& heights);
 

@@ -1,11 +1,11 @@
 #pragma once
-// From depth-averaged columns to 3D points (Fois, de Falco, Formaggia 2025, Algorithm 2).
+// From depth-averaged particles to 3D points (Fois, de Falco, Formaggia 2025, Algorithm 2).
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "convert/flow_columns.h"
+#include "convert/flow_particles.h"
 #include "convert/profile.h"
 
 namespace frana {
@@ -22,17 +22,17 @@ struct ConversionChoice {
     VelocityProfile profile = VelocityProfile::plug;
 };
 
-/// 3D points, column after column and each from below. Arrays of vectors hold a point's components together.
+/// 3D points, particle after particle and each from below. Arrays of vectors hold a point's components together.
 struct SolidPoints {
     std::vector<double> position;    ///< x, y, z [m]
     std::vector<double> velocity;    ///< [m/s]
     std::vector<double> mass;        ///< [kg]
     std::vector<double> volume;      ///< [m^3]
-    std::vector<double> pressure;    ///< [Pa], see columns_to_points()
+    std::vector<double> pressure;    ///< [Pa], see particles_to_points()
     std::vector<double> stress;      ///< xx, yy, zz, xy, yz, xz; tension positive [Pa]
-    std::vector<double> column;      ///< the run's number of the column (FlowColumns::id) [1]
+    std::vector<double> particle;    ///< the run's number of the particle (FlowParticles::id) [1]
     std::vector<double> height;      ///< of the slice that the point stands for [m]
-    std::vector<std::size_t> first;  ///< of each column its first point, then the number of points
+    std::vector<std::size_t> first;  ///< of each particle its first point, then the number of points
 
     std::size_t count() const { return mass.size(); }
 };
@@ -40,21 +40,21 @@ struct SolidPoints {
 /// Throws UserError for a spacing that is not a positive number.
 void require_spacing(double spacing);
 
-/// Columns within [xmin, ymin, xmax, ymax].
-FlowColumns columns_within(const FlowColumns& columns, const std::array<double, 4>& window);
+/// Particles within [xmin, ymin, xmax, ymax].
+FlowParticles particles_within(const FlowParticles& particles, const std::array<double, 4>& window);
 
-/// Number of points that columns_to_points() would make; as a real number, since it may be beyond any memory.
-double forecast_points(const FlowColumns& columns, double spacing);
+/// Number of points that particles_to_points() would make; as a real number, since it may be beyond any memory.
+double forecast_points(const FlowParticles& particles, double spacing);
 
 /// Memory that a point of SolidPoints takes [bytes].
 constexpr double kBytesPerPoint = 8.0 * (3 + 3 + 1 + 1 + 1 + 6 + 1 + 1);
 
-/// The points. Each column gives layer_count() points of equal mass and volume above one another. They share its
+/// The points. Each particle gives layer_count() points of equal mass and volume above one another. They share its
 /// horizontal velocity by the profile, whose mean over the layers is one. The pressure is hydrostatic, from the
-/// column's bed pressure at the bed to zero at the free surface. The stress is minus that pressure, plus the mean
+/// particle's bed pressure at the bed to zero at the free surface. The stress is minus that pressure, plus the mean
 /// stress of the rheology. That is without change of volume, zz = -xx - yy; its vertical shear is not in a
 /// depth-averaged state. Deterministic for any number of threads. Throws UserError for a spacing that is not positive;
-/// InternalError when the columns' arrays differ in length.
-SolidPoints columns_to_points(const FlowColumns& columns, const ConversionChoice& choice);
+/// InternalError when the particles' arrays differ in length.
+SolidPoints particles_to_points(const FlowParticles& particles, const ConversionChoice& choice);
 
 }  // namespace frana

@@ -22,7 +22,7 @@
 namespace frana {
 namespace {
 
-/// Cells: as far from a barrier run-up counts. Columns stop one before it, where its ramp begins.
+/// Cells: as far from a barrier run-up counts. Particles stop one before it, where its ramp begins.
 constexpr double kClose = 2.0;
 
 /// Elevations of the nodes, `height` higher.
@@ -101,9 +101,9 @@ NodeBox nodes_around(const std::pair<Vec3, Vec3>& box, const GridGeometry& g) {
     return common(widened(cells_of({low.head<2>(), high.head<2>()}, g), 1), NodeBox::all(g));
 }
 
-/// Cells that make a wall along a line as thick for columns as points will meet it. So none of them starts inside.
+/// Cells that make a wall along a line as thick for particles as points will meet it. So none of them starts inside.
 /// Where there are no points, and no thickness is given, it is a cell thick (least_wall_thickness() is three of them).
-double cell_for_columns(const Barrier& barrier, const Scene& scene) {
+double cell_for_particles(const Barrier& barrier, const Scene& scene) {
     if (scene.solid) return scene.solid->cell;
     return barrier.thickness ? 0.0 : scene.bed.geometry.cell / 3.0;
 }
@@ -137,11 +137,11 @@ double top_of(const Surface& barrier, const Vec2& place) {
     return barrier.prism->inside({place.x(), place.y(), top - 1.0}) ? top : -std::numeric_limits<double>::infinity();
 }
 
-void stand_on_barriers(FlowColumns& columns, const std::vector<Surface>& surfaces) {
+void stand_on_barriers(FlowParticles& particles, const std::vector<Surface>& surfaces) {
     for (const Surface& surface : surfaces) {
         if (!surface.is_barrier()) continue;
-        for (std::size_t k = 0; k < columns.count(); ++k)
-            columns.bed[k] = std::max(columns.bed[k], top_of(surface, {columns.x[k], columns.y[k]}));
+        for (std::size_t k = 0; k < particles.count(); ++k)
+            particles.bed[k] = std::max(particles.bed[k], top_of(surface, {particles.x[k], particles.y[k]}));
     }
 }
 
@@ -173,7 +173,7 @@ Surface surface_of(const Barrier& barrier, const Raster& bed, double cell) {
 }
 
 Surface surface_around(const Barrier& barrier, const Scene& scene) {
-    const double cell = cell_for_columns(barrier, scene);
+    const double cell = cell_for_particles(barrier, scene);
     if (barrier.shape) return surface_of(barrier, scene.bed, cell);
     std::vector<Vec2> corners;
     const Polygons plan = plan_of(barrier, cell);
@@ -206,7 +206,7 @@ std::vector<BarrierNode> nodes_of(const Barrier& barrier, const Surface& solid, 
     if (barrier.shape) return nodes_of_shape(solid, g);
     const NodeBox near = nodes_around(box_around(solid), g);
     if (near.nx < 1 || near.ny < 1) return {};
-    const std::vector<char> raised = nodes_of_outline(plan_of(barrier, cell_for_columns(barrier, scene)), near.of(g));
+    const std::vector<char> raised = nodes_of_outline(plan_of(barrier, cell_for_particles(barrier, scene)), near.of(g));
     std::vector<BarrierNode> nodes;
     for (Index j = 0; j < near.ny; ++j)
         for (Index i = 0; i < near.nx; ++i) {
@@ -314,24 +314,24 @@ BarrierTiles::BarrierTiles(const GridGeometry& grid, const std::vector<std::pair
     : x0_(grid.x0), y0_(grid.y0) {
     constexpr Index kCells = 4;  // a side: about a house, so that a tile has few barriers
     size_ = static_cast<double>(kCells) * grid.cell;
-    columns_ = grid.nx / kCells + 1;
+    across_ = grid.nx / kCells + 1;
     const Index rows = grid.ny / kCells + 1;
-    last_i_ = static_cast<double>(columns_ - 1), last_j_ = static_cast<double>(rows - 1);
+    last_i_ = static_cast<double>(across_ - 1), last_j_ = static_cast<double>(rows - 1);
     std::vector<std::pair<std::size_t, Index>> all;  // tile, number
     const auto tile = [&](double at, double last) { return static_cast<Index>(std::clamp(at / size_, 0.0, last)); };
     for (std::size_t n = 0; n < boxes.size(); ++n) {
         const auto& [low, high] = boxes[n];
         for (Index j = tile(low.y() - margin - y0_, last_j_); j <= tile(high.y() + margin - y0_, last_j_); ++j)
             for (Index i = tile(low.x() - margin - x0_, last_i_); i <= tile(high.x() + margin - x0_, last_i_); ++i)
-                all.emplace_back(static_cast<std::size_t>(j * columns_ + i), static_cast<Index>(n));
+                all.emplace_back(static_cast<std::size_t>(j * across_ + i), static_cast<Index>(n));
     }
     std::sort(all.begin(), all.end());
-    begin_.assign(static_cast<std::size_t>(columns_ * rows) + 1, 0);
+    begin_.assign(static_cast<std::size_t>(across_ * rows) + 1, 0);
     for (const auto& entry : all) ++begin_[entry.first + 1], numbers_.push_back(entry.second);
     for (std::size_t k = 1; k < begin_.size(); ++k) begin_[k] += begin_[k - 1];
 }
 
-ColumnWatch::ColumnWatch(const Scene& scene) : grid_(scene.bed.geometry), cell_(grid_.cell) {
+ParticleWatch::ParticleWatch(const Scene& scene) : grid_(scene.bed.geometry), cell_(grid_.cell) {
     for (const Barrier& barrier : scene.barriers) {
         surfaces_.push_back(surface_around(barrier, scene));
         boxes_.push_back(box_around(surfaces_.back()));
@@ -349,7 +349,7 @@ ColumnWatch::ColumnWatch(const Scene& scene) : grid_(scene.bed.geometry), cell_(
     note_inflows(scene);
 }
 
-void ColumnWatch::note_inflows(const Scene& scene) {
+void ParticleWatch::note_inflows(const Scene& scene) {
     if (scene.inflows.empty()) return;
     const auto all = Feed(scene.inflows).entries(scene.end);
     for (std::size_t n = 0; n < all.size(); ++n) {
@@ -360,13 +360,13 @@ void ColumnWatch::note_inflows(const Scene& scene) {
     }
 }
 
-bool ColumnWatch::is_on_top(const Vec2& place) const {
+bool ParticleWatch::is_on_top(const Vec2& place) const {
     const auto [first, end] = tiles_.barriers_at(place);
     return std::any_of(first, end,
                        [&](Index n) { return std::isfinite(top_of(surfaces_[static_cast<std::size_t>(n)], place)); });
 }
 
-std::vector<std::string> ColumnWatch::remarks() const {
+std::vector<std::string> ParticleWatch::remarks() const {
     std::vector<std::string> all;
     if (placed_ > 0.0)
         all.push_back(fmt::format(
@@ -381,7 +381,7 @@ std::vector<std::string> ColumnWatch::remarks() const {
     return all;
 }
 
-void ColumnWatch::inherit(Index child, Index parent) {
+void ParticleWatch::inherit(Index child, Index parent) {
     const auto c = static_cast<std::size_t>(child), p = static_cast<std::size_t>(parent);
     if (p >= near_.size() && c >= near_.size()) return;  // neither was near
     make_room(std::max(c, p));
@@ -393,50 +393,51 @@ void ColumnWatch::inherit(Index child, Index parent) {
     for (std::size_t axis = 0; axis < 2; ++axis) last_[2 * c + axis] = last_[2 * p + axis];
 }
 
-void ColumnWatch::make_room(std::size_t id) {
+void ParticleWatch::make_room(std::size_t id) {
     if (near_.size() <= id) near_.resize(id + 1, 0);
     if (last_.size() < 2 * (id + 1)) last_.resize(2 * (id + 1), 0.0);
 }
 
-void ColumnWatch::sample(const ColumnAt& column) {
-    const auto [first, end] = tiles_.barriers_at(column.place);
+void ParticleWatch::sample(const ParticleAt& particle) {
+    const auto [first, end] = tiles_.barriers_at(particle.place);
     if (first == end) return;
-    const auto id = static_cast<std::size_t>(column.id);
+    const auto id = static_cast<std::size_t>(particle.id);
     make_room(id);
     const Vec2 from(last_[2 * id], last_[2 * id + 1]);
     const bool came = near_[id] > 0 && near_[id] == round_ - 1;
-    for (const Index* n = first; n != end; ++n) sample_at(static_cast<std::size_t>(*n), column, came ? &from : nullptr);
+    for (const Index* n = first; n != end; ++n)
+        sample_at(static_cast<std::size_t>(*n), particle, came ? &from : nullptr);
     near_[id] = round_;
-    for (std::size_t axis = 0; axis < 2; ++axis) last_[2 * id + axis] = column.place[static_cast<Eigen::Index>(axis)];
+    for (std::size_t axis = 0; axis < 2; ++axis) last_[2 * id + axis] = particle.place[static_cast<Eigen::Index>(axis)];
 }
 
-void ColumnWatch::sample_at(std::size_t n, const ColumnAt& column, const Vec2* from) {
-    const Vec3 top_of_it(column.place.x(), column.place.y(), column.surface);
+void ParticleWatch::sample_at(std::size_t n, const ParticleAt& particle, const Vec2* from) {
+    const Vec3 top_of_it(particle.place.x(), particle.place.y(), particle.surface);
     if (!stands_near(surfaces_[n], boxes_[n], top_of_it, kClose * cell_, cell_)) return;
     const auto barrier = static_cast<Index>(n);
-    const auto found = over_.find(column.id);
+    const auto found = over_.find(particle.id);
     const bool was_over =
         found != over_.end() && std::find(found->second.begin(), found->second.end(), barrier) != found->second.end();
     const bool came_to_it = from != nullptr && !was_over;
-    const bool on_it = std::isfinite(top_of(surfaces_[n], column.place)),
-               over = (on_it && at_crest(surfaces_[n], column.place, cell_)) ||
-                      (came_to_it && crosses(surfaces_[n], boxes_[n], *from, column.place));
+    const bool on_it = std::isfinite(top_of(surfaces_[n], particle.place)),
+               over = (on_it && at_crest(surfaces_[n], particle.place, cell_)) ||
+                      (came_to_it && crosses(surfaces_[n], boxes_[n], *from, particle.place));
     BarrierLoad& load = loads_.barriers[n];
     // On the roof of a neighbour it does not run up this one.
-    if (on_it || !column.on_barrier) load.reach(column.surface);
-    if (over && came_to_it) load.overtopped += column.volume;
-    if (over && !was_over) over_[column.id].push_back(barrier);
+    if (on_it || !particle.on_barrier) load.reach(particle.surface);
+    if (over && came_to_it) load.overtopped += particle.volume;
+    if (over && !was_over) over_[particle.id].push_back(barrier);
 }
 
-bool ColumnWatch::is_raised(const Vec2& node) const {
+bool ParticleWatch::is_raised(const Vec2& node) const {
     const Index i = std::lround((node.x() - grid_.x0) / grid_.cell),
                 j = std::lround((node.y() - grid_.y0) / grid_.cell);
     if (i < 0 || j < 0 || i >= grid_.nx || j >= grid_.ny) return false;
     return std::binary_search(raised_.begin(), raised_.end(), j * grid_.nx + i);
 }
 
-double ColumnWatch::adjacent_surface(const DepthAveraged& columns, const Vec2& place) const {
-    const Flow& flow = columns.flow();
+double ParticleWatch::adjacent_surface(const DepthAveraged& particles, const Vec2& place) const {
+    const Flow& flow = particles.flow();
     const GridGeometry& g = flow.grid.geometry();
     const auto first = [&](double at, double start, Index count) {
         return std::clamp<Index>(static_cast<Index>(std::floor((at - start) / g.cell)), 0, count - 2);
@@ -455,39 +456,39 @@ double ColumnWatch::adjacent_surface(const DepthAveraged& columns, const Vec2& p
     return weights > 0.0 ? sum / weights : std::numeric_limits<double>::quiet_NaN();
 }
 
-bool ColumnWatch::is_due(DepthAveraged& columns, double before, double until) {
-    for (const DepthAveraged::Birth& birth : columns.take_births()) inherit(birth.child, birth.parent);
-    const Status& now = columns.status();
+bool ParticleWatch::is_due(DepthAveraged& particles, double before, double until) {
+    for (const DepthAveraged::Birth& birth : particles.take_births()) inherit(birth.child, birth.parent);
+    const Status& now = particles.status();
     moved_ += now.max_speed_on_map * (now.time - before);  // where something enters, dt begins anew
     if (moved_ < 0.5 * cell_ && now.time < until) return false;
     moved_ = 0.0;
     return true;
 }
 
-void ColumnWatch::sample_columns(const DepthAveraged& columns, double density) {
-    const Flow& flow = columns.flow();
+void ParticleWatch::sample_particles(const DepthAveraged& particles, double density) {
+    const Flow& flow = particles.flow();
     const GridGeometry& g = flow.grid.geometry();
-    const Columns& c = flow.columns;
+    const Particles& c = flow.particles;
     begin_round();
     for (Index p = 0; p < c.count(); ++p) {
         const Vec2 place(g.x0 + g.cell * c.x[p], g.y0 + g.cell * c.y[p]);
         if (!is_near(place)) continue;
-        double surface = adjacent_surface(columns, place);
+        double surface = adjacent_surface(particles, place);
         const bool on_barrier = std::isnan(surface);
         if (on_barrier) {
-            const Sample there = columns.at(place);
+            const Sample there = particles.at(place);
             surface = there.elevation + there.depth;
         }
         sample({c.id[p], place, surface, c.mass[p] / density, on_barrier});
     }
 }
 
-void ColumnWatch::serialize(Archive& archive) {
+void ParticleWatch::serialize(Archive& archive) {
     const Archive::Part part(archive, "barriers");
     archive.numbers("moved", {&moved_});
     std::vector<double> sums;
     for (const BarrierLoad& load : loads_.barriers) sums.insert(sums.end(), {load.run_up, load.overtopped});
-    std::vector<Index> over;  // number of the column, of the barrier
+    std::vector<Index> over;  // number of the particle, of the barrier
     for (const auto& entry : over_)
         for (const Index barrier : entry.second) over.insert(over.end(), {entry.first, barrier});
     archive.number("round", round_);
@@ -566,7 +567,7 @@ BarrierWatch::BarrierWatch(const Scene& scene, const Mpm3d& flow, double blur)
     due_.assign(surfaces_.size(), std::numeric_limits<double>::max());
 }
 
-/// Columns come no nearer than a cell of the terrain, where a barrier's ramp begins.
+/// Particles come no nearer than a cell of the terrain, where a barrier's ramp begins.
 void BarrierWatch::note_start(const Mpm3d& flow) {
     const MaterialPoints& points = flow.body().points;
     for (std::size_t n = 0; n < surfaces_.size(); ++n) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "convert/flow_columns.h"
+#include "convert/flow_particles.h"
 #include "coupling/run_up.h"
 #include "observe/observer.h"
 #include "scene/scene.h"
@@ -44,7 +44,7 @@ std::vector<std::string> remarks_on(const Footings& footings);
 /// A barrier of that scene as a 3D surface. Throws as solid_of().
 Surface surface_of(const Barrier& barrier, const Raster& bed, double cell);
 
-/// The same as columns meet it. It holds the ground around itself alone: terrains are large, and barriers many.
+/// The same as particles meet it. It holds the ground around itself alone: terrains are large, and barriers many.
 Surface surface_around(const Barrier& barrier, const Scene& scene);
 
 /// Lowest and highest corner of the box around a barrier; of a shape without the room around it [m].
@@ -53,12 +53,12 @@ std::pair<Vec3, Vec3> box_around(const Surface& barrier);
 /// Elevation of a barrier's top at a place of the map; minus infinity outside of it [m].
 double top_of(const Surface& barrier, const Vec2& place);
 
-/// Columns within a barrier's outline stand on it, which is ground to them. Points inside it would be forced out and
+/// Particles within a barrier's outline stand on it, which is ground to them. Points inside it would be forced out and
 /// gain what that lifts them.
-void stand_on_barriers(FlowColumns& columns, const std::vector<Surface>& surfaces);
+void stand_on_barriers(FlowParticles& particles, const std::vector<Surface>& surfaces);
 
-/// A column's place in the map [m], and what it reaches up to and holds there.
-struct ColumnAt {
+/// A particle's place in the map [m], and what it reaches up to and holds there.
+struct ParticleAt {
     Index id;
     Vec2 place;
     double surface;   ///< elevation of its top [m]
@@ -76,7 +76,7 @@ public:
     std::pair<const Index*, const Index*> barriers_at(const Vec2& place) const {
         const auto i = static_cast<Index>(std::clamp((place.x() - x0_) / size_, 0.0, last_i_));
         const auto j = static_cast<Index>(std::clamp((place.y() - y0_) / size_, 0.0, last_j_));
-        const auto tile = static_cast<std::size_t>(j * columns_ + i);
+        const auto tile = static_cast<std::size_t>(j * across_ + i);
         if (begin_[tile] == begin_[tile + 1]) return {nullptr, nullptr};
         return {numbers_.data() + begin_[tile], numbers_.data() + begin_[tile + 1]};
     }
@@ -84,30 +84,30 @@ public:
 private:
     double x0_ = 0.0, y0_ = 0.0, size_ = 1.0;  ///< south-west corner, side of a tile [m]
     double last_i_ = 0.0, last_j_ = 0.0;       ///< of the last tile; places beyond count as in the outer ones
-    Index columns_ = 1;
+    Index across_ = 1;
     std::vector<Index> numbers_;            ///< tile after tile
     std::vector<std::size_t> begin_{0, 0};  ///< of each tile in `numbers_`, and the end
 };
 
-/// Which columns run up barriers and over them. Their force on barriers is not known: barriers are ground to them.
-class ColumnWatch {
+/// Which particles run up barriers and over them. Their force on barriers is not known: barriers are ground to them.
+class ParticleWatch {
 public:
-    explicit ColumnWatch(const Scene& scene);
-    /// A column was split: what is known of it holds for its part.
+    explicit ParticleWatch(const Scene& scene);
+    /// A particle was split: what is known of it holds for its part.
     void inherit(Index child, Index parent);
-    /// Samples of all columns near barriers follow. Between two rounds none goes as far as two cells.
+    /// Samples of all particles near barriers follow. Between two rounds none goes as far as two cells.
     void begin_round() { ++round_; }
     /// Whether a barrier may be within two cells of a place: elsewhere there is nothing to sample.
     bool is_near(const Vec2& place) const { return tiles_.barriers_at(place).first != nullptr; }
-    /// Takes a column's place, once a round where it is near. It counts when its way from the last place first leads onto a
-    /// barrier, and once. A column that was not near before has no way yet. Of two that merge the one whose number
-    /// remains counts for both from then on.
-    void sample(const ColumnAt& column);
-    /// After a step of columns, which note their parents, from the time `before` on: whether a round is due. It is when one
-    /// may have moved by half a cell, and at `until`, an output time.
-    bool is_due(DepthAveraged& columns, double before, double until);
-    /// A round over all columns, of a material of that density [kg/m3].
-    void sample_columns(const DepthAveraged& columns, double density);
+    /// Takes a particle's place, once a round where it is near. It counts when its way from the last place first leads
+    /// onto a barrier, and once. A particle that was not near before has no way yet. Of two that merge the one whose
+    /// number remains counts for both from then on.
+    void sample(const ParticleAt& particle);
+    /// After a step of particles, which note their parents, from the time `before` on: whether a round is due. It is
+    /// when one may have moved by half a cell, and at `until`, an output time.
+    bool is_due(DepthAveraged& particles, double before, double until);
+    /// A round over all particles, of a material of that density [kg/m3].
+    void sample_particles(const DepthAveraged& particles, double density);
     const BarrierLoads& loads() const { return loads_; }
     /// Of what a scene places on barriers, or lets in there.
     std::vector<std::string> remarks() const;
@@ -127,22 +127,22 @@ private:
     /// Elevation of the top of what stands at a place [m]. It is of the nodes around it that no barrier raises.
     /// Otherwise half of the barrier's height would count as run up. Not a number where barriers raise all that are
     /// wet.
-    double adjacent_surface(const DepthAveraged& columns, const Vec2& place) const;
-    void sample_at(std::size_t n, const ColumnAt& column, const Vec2* from);
+    double adjacent_surface(const DepthAveraged& particles, const Vec2& place) const;
+    void sample_at(std::size_t n, const ParticleAt& particle, const Vec2* from);
     std::vector<Surface> surfaces_;             ///< of each barrier
     std::vector<std::pair<Vec3, Vec3>> boxes_;  ///< around each
     BarrierTiles tiles_;
     Index round_ = 0;
-    std::vector<Index> near_;  ///< by number of the column: the last round in which it was near a barrier; 0: none
-    std::map<Index, std::vector<Index>> over_;  ///< barriers that a column has been over, by its number; few have
-    std::vector<double> last_;                  ///< x and y of each column's place in that round, by its number [m]
+    std::vector<Index> near_;  ///< by number of the particle: the last round in which it was near a barrier; 0: none
+    std::map<Index, std::vector<Index>> over_;  ///< barriers that a particle has been over, by its number; few have
+    std::vector<double> last_;                  ///< x and y of each particle's place in that round, by its number [m]
     BarrierLoads loads_;
-    GridGeometry grid_;          ///< that barriers were found on; that of the columns may have grown
+    GridGeometry grid_;          ///< that barriers were found on; that of the particles may have grown
     std::vector<Index> raised_;  ///< nodes of it that barriers raise, ascending
     double cell_;
     double placed_ = 0.0;          ///< of releases, on top of barriers [m3]
     std::vector<Entering> enter_;  ///< of inflows that enter there
-    double moved_ = 0.0;           ///< farthest way of a column since the last round [m]
+    double moved_ = 0.0;           ///< farthest way of a particle since the last round [m]
 };
 
 /// What 3D points do to barriers.
@@ -161,7 +161,7 @@ public:
     void sample(const Mpm3d& flow);
     /// There are no points any more: from now on no force is known.
     void end() { loads_.measures = false; }
-    /// Columns adjacent to the points, of which `after` is the watch, `before` its loads before the last round.
+    /// Particles adjacent to the points, of which `after` is the watch, `before` its loads before the last round.
     void add(const BarrierLoads& before, const BarrierLoads& after);
     const BarrierLoads& loads() const { return loads_; }
     /// Of what the forces are not, in a stage that begins at `from` [s].
@@ -183,7 +183,7 @@ private:
     std::vector<double> due_;  ///< of each: when the first point comes to it, at the speed it came with [s]
     BarrierLoads loads_;
     RunUp reached_;          ///< at one barrier at a time
-    double density_, ramp_;  ///< ramp: of a barrier for columns [m]
+    double density_, ramp_;  ///< ramp: of a barrier for particles [m]
     double placed_ = 0.0;    ///< of points that came to be on top of barriers [m3]
 };
 

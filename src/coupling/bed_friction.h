@@ -7,9 +7,9 @@
 namespace frana {
 
 /// The deceleration of the mean flow at a place over its normal acceleration, by the law of the nearest node. That flow
-/// is as deep and as fast as the points and adjacent columns there on the whole. The lowest points are slower than the
-/// rest where material shears. A bed law is one of the mean speed. Where no points stand in the map it is the friction
-/// of the slowest flow. THEORY.md (12).
+/// is as deep and as fast as the points and adjacent particles there on the whole. The lowest points are slower than
+/// the rest where material shears. A bed law is one of the mean speed. Where no points stand in the map it is the
+/// friction of the slowest flow. THEORY.md (12).
 class BedFriction final : public SurfaceFriction {
 public:
     /// Both outlive this. `map` may follow the points between steps.

@@ -1,5 +1,5 @@
 #pragma once
-// Material whose room a barrier's ramp takes, as the ground of columns, moved to what stands before it.
+// Material whose room a barrier's ramp takes, as the ground of particles, moved to what stands before it.
 #include <array>
 #include <functional>
 #include <utility>

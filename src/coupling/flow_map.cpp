@@ -81,20 +81,20 @@ FlowMap::Mean FlowMap::mean_at(const Vec2& point) const {
     return mean;
 }
 
-void FlowMap::set_adjacent(const FlowColumns& columns) {
+void FlowMap::set_adjacent(const FlowParticles& particles) {
     if (adjacent_.empty()) adjacent_.resize(nodes_.size());
     for (const Index k : adjacent_places_) adjacent_[static_cast<std::size_t>(k)] = Node{};
     adjacent_places_.clear();
-    for (std::size_t c = 0; c < columns.count(); ++c) {
-        const Vec2 along(columns.vx[c], columns.vy[c]);
-        const Vec3 velocity(along.x(), along.y(), along.dot(Vec2(columns.slope_x[c], columns.slope_y[c])));
-        const double middle = columns.bed[c] + 0.5 * columns.depth[c];
-        for_each_around(columns.x[c], columns.y[c], [&](Index k, double share) {
+    for (std::size_t c = 0; c < particles.count(); ++c) {
+        const Vec2 along(particles.vx[c], particles.vy[c]);
+        const Vec3 velocity(along.x(), along.y(), along.dot(Vec2(particles.slope_x[c], particles.slope_y[c])));
+        const double middle = particles.bed[c] + 0.5 * particles.depth[c];
+        for_each_around(particles.x[c], particles.y[c], [&](Index k, double share) {
             const double w = share * open_.narrowing(k, middle);
             Node& node = adjacent_[static_cast<std::size_t>(k)];
             if (node.mass == 0.0) adjacent_places_.push_back(k);
-            node.mass += w * columns.mass[c];
-            node.momentum += w * columns.mass[c] * velocity;
+            node.mass += w * particles.mass[c];
+            node.momentum += w * particles.mass[c] * velocity;
         });
     }
 }

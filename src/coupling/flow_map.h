@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "convert/flow_columns.h"
+#include "convert/flow_particles.h"
 #include "coupling/open_share.h"
 #include "mpm/node_peak.h"
 #include "observe/archive.h"
@@ -51,8 +51,8 @@ public:
     }  ///< of the slope
     /// Of the barrier that fills a node, which its depth stands on [m]; NaN where it stands on the bed.
     double top_below(Index k) const { return open_.top_below(k); }
-    /// Columns that are adjacent to the points from now on: mean_at() counts them too.
-    void set_adjacent(const FlowColumns& columns);
+    /// Particles that are adjacent to the points from now on: mean_at() counts them too.
+    void set_adjacent(const FlowParticles& particles);
     /// Of the flow between the nodes, bilinear; beyond them the nearest. The speed is that of the common momentum, up and down
     /// included.
     struct Mean {
@@ -103,7 +103,7 @@ private:
     std::vector<Node> nodes_;
     std::vector<double> heights_;  ///< of the highest point around each node above the bed, with half its size [m]
     Piled piled_;
-    std::vector<Node> adjacent_;          ///< of the adjacent columns; empty: none were ever set
+    std::vector<Node> adjacent_;          ///< of the adjacent particles; empty: none were ever set
     std::vector<Index> adjacent_places_;  ///< nodes that have any of that
     std::vector<NodePeak> peaks_;
     FlowExtent extent_;

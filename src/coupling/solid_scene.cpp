@@ -106,24 +106,25 @@ std::vector<std::uint8_t> nodes_at_edge(const Scene& scene) {
 
 namespace {
 
-/// Of a column along the bed [m^2/s^2].
-double squared_speed(const FlowColumns& columns, std::size_t k) {
-    const double climb = columns.vx[k] * columns.slope_x[k] + columns.vy[k] * columns.slope_y[k];
-    return columns.vx[k] * columns.vx[k] + columns.vy[k] * columns.vy[k] + climb * climb;
+/// Of a particle along the bed [m^2/s^2].
+double squared_speed(const FlowParticles& particles, std::size_t k) {
+    const double climb = particles.vx[k] * particles.slope_x[k] + particles.vy[k] * particles.slope_y[k];
+    return particles.vx[k] * particles.vx[k] + particles.vy[k] * particles.vy[k] + climb * climb;
 }
 
-/// What brakes the columns at the bed, or will once they flow as fast as their slope lets them. Then friction is the
+/// What brakes the particles at the bed, or will once they flow as fast as their slope lets them. Then friction is the
 /// slope. It is a mean by mass. A film at the margin, which drag brakes most, says nothing of what the flow needs
 /// inside.
-double mean_friction(const Scene& scene, const FlowColumns& columns) {
+double mean_friction(const Scene& scene, const FlowParticles& particles) {
     constexpr double kSteepest = 1.0;  // no sand stands steeper than 45 degrees
     double sum = 0.0, mass = 0.0;
-    for (std::size_t k = 0; k < columns.count(); ++k) {
-        const double slope = std::hypot(columns.slope_x[k], columns.slope_y[k]);
-        const FlowMap::Mean flow{columns.depth[k], std::sqrt(squared_speed(columns, k)), 1.0 / std::hypot(1.0, slope)};
-        const double now = friction_of_flow(scene, {columns.x[k], columns.y[k]}, flow);
-        sum += columns.mass[k] * std::min(std::max(now, slope), kSteepest);
-        mass += columns.mass[k];
+    for (std::size_t k = 0; k < particles.count(); ++k) {
+        const double slope = std::hypot(particles.slope_x[k], particles.slope_y[k]);
+        const FlowMap::Mean flow{particles.depth[k], std::sqrt(squared_speed(particles, k)),
+                                 1.0 / std::hypot(1.0, slope)};
+        const double now = friction_of_flow(scene, {particles.x[k], particles.y[k]}, flow);
+        sum += particles.mass[k] * std::min(std::max(now, slope), kSteepest);
+        mass += particles.mass[k];
     }
     return mass > 0.0 ? sum / mass : 0.0;
 }
@@ -143,12 +144,12 @@ double largest_at_rest(const Scene& scene) {
 }
 
 /// Of sand that has the bed's friction.
-double friction_inside(const Scene& scene, const FlowColumns& columns) {
-    const double at_bed = scene.solid->whole_bed_law ? mean_friction(scene, columns) : scene.solid->bed_friction;
+double friction_inside(const Scene& scene, const FlowParticles& particles) {
+    const double at_bed = scene.solid->whole_bed_law ? mean_friction(scene, particles) : scene.solid->bed_friction;
     return std::max(largest_at_rest(scene), at_bed);
 }
 
-/// The speed that a column's whole weight, as shear at the bed, gives a fluid or mud [m/s]. It is `fall` at most, the
+/// The speed that a particle's whole weight, as shear at the bed, gives a fluid or mud [m/s]. It is `fall` at most, the
 /// speed that the way down gives.
 double own_speed(const SolidLaw& law, double density, double gravity, double depth, double fall) {
     const auto of = [&](double viscosity, double yield_stress) {
@@ -161,15 +162,15 @@ double own_speed(const SolidLaw& law, double density, double gravity, double dep
 }
 
 /// Means by mass of depth and speed. `low`: elevation of the lowest ground.
-void add_means(const Scene& scene, const FlowColumns& columns, double low, SolidStart& start) {
+void add_means(const Scene& scene, const FlowParticles& particles, double low, SolidStart& start) {
     double mass = 0.0;
-    for (std::size_t k = 0; k < columns.count(); ++k) {
-        const double v2 = squared_speed(columns, k), depth = columns.depth[k];
-        const double fall = std::sqrt(v2 + 2.0 * scene.gravity * std::max(0.0, columns.bed[k] + depth - low));
+    for (std::size_t k = 0; k < particles.count(); ++k) {
+        const double v2 = squared_speed(particles, k), depth = particles.depth[k];
+        const double fall = std::sqrt(v2 + 2.0 * scene.gravity * std::max(0.0, particles.bed[k] + depth - low));
         const double own = own_speed(scene.solid->law, scene.density, scene.gravity, depth, fall);
-        mass += columns.mass[k];
-        start.depth += columns.mass[k] * depth;
-        start.speed += columns.mass[k] * std::max(std::sqrt(v2), own);
+        mass += particles.mass[k];
+        start.depth += particles.mass[k] * depth;
+        start.speed += particles.mass[k] * std::max(std::sqrt(v2), own);
     }
     if (mass > 0.0) start.depth /= mass, start.speed /= mass;
 }
@@ -189,22 +190,22 @@ double resolving_cell(const SolidLaw& law, double density, double depth, double 
     return std::sqrt(stress / density) / (kNearest * shear_rate);
 }
 
-SolidStart choose_start(const Scene& scene, const FlowColumns& columns) {
+SolidStart choose_start(const Scene& scene, const FlowParticles& particles) {
     double fastest = 0.0, head = -INFINITY, deepest = scene.solid->cell;
-    for (std::size_t k = 0; k < columns.count(); ++k) {
-        const double v2 = squared_speed(columns, k);
-        fastest = std::max({fastest, std::sqrt(v2), std::sqrt(2.0 * scene.gravity * columns.depth[k])});
-        deepest = std::max(deepest, columns.depth[k]);
-        head = std::max(head, columns.bed[k] + columns.depth[k] + 0.5 * v2 / scene.gravity);
+    for (std::size_t k = 0; k < particles.count(); ++k) {
+        const double v2 = squared_speed(particles, k);
+        fastest = std::max({fastest, std::sqrt(v2), std::sqrt(2.0 * scene.gravity * particles.depth[k])});
+        deepest = std::max(deepest, particles.depth[k]);
+        head = std::max(head, particles.bed[k] + particles.depth[k] + 0.5 * v2 / scene.gravity);
     }
     const auto [low, high] = ground_of(scene);
     SolidStart start;
-    start.friction = friction_inside(scene, columns);
+    start.friction = friction_inside(scene, particles);
     start.sound_speed = scene.solid->sound_speed.value_or(10.0 * std::max(fastest, 0.1));
     constexpr double kRoom = 8.0;    // cells above the ground at least
     constexpr double kSplash = 4.0;  // jets that a wall throws up rise to several times the energy of their flow
     start.top = scene.solid->top.value_or(std::max(low + kSplash * (head - low), high + kRoom * scene.solid->cell));
-    add_means(scene, columns, low, start);
+    add_means(scene, particles, low, start);
     start.stuck = scene.solid->stuck ||
                   (scene.solid->stuck_where_resolved &&
                    scene.solid->cell <= resolving_cell(scene.solid->law, scene.density, start.depth, start.speed));

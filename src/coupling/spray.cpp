@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "convert/flow_columns.h"
+#include "convert/flow_particles.h"
 #include "observe/archive.h"
 #include "scene/scene.h"
 #include "solid3d/mpm3d.h"

@@ -19,7 +19,7 @@ bool marked(const std::vector<std::uint8_t>& marks, const GridGeometry& g, doubl
 
 const double* numbers(const Frame& frame, const char* name) {
     const Field* const field = frame.particle(name);
-    expect(field != nullptr, "columns have the quantities that 3D points need");
+    expect(field != nullptr, "particles have the quantities that 3D points need");
     return field->data;
 }
 
@@ -31,63 +31,63 @@ Mat2 domain_of(const Edges& edges, double cell) {
     return domain;
 }
 
-std::vector<Mat2> domains_of(const Columns& columns, double cell, const Scheme& scheme) {
+std::vector<Mat2> domains_of(const Particles& particles, double cell, const Scheme& scheme) {
     std::vector<Mat2> domains;
     if (scheme.paper_pressure) return domains;
-    columns.with_real([&](auto real) {
-        const auto& held = columns.carried<decltype(real)>();
-        for (Index p = 0; p < columns.count(); ++p) domains.push_back(domain_of(edges_of(held, p), cell));
+    particles.with_real([&](auto real) {
+        const auto& held = particles.carried<decltype(real)>();
+        for (Index p = 0; p < particles.count(); ++p) domains.push_back(domain_of(edges_of(held, p), cell));
     });
     return domains;
 }
 
-FlowColumns columns_of(const Frame& frame, const std::vector<Mat2>& domains, const Raster& bed,
-                       const std::vector<std::uint8_t>& marks) {
+FlowParticles particles_of(const Frame& frame, const std::vector<Mat2>& domains, const Raster& bed,
+                           const std::vector<std::uint8_t>& marks) {
     const double *position = numbers(frame, "position"), *velocity = numbers(frame, "velocity"),
                  *depth = numbers(frame, "depth"), *mass = numbers(frame, "mass"), *volume = numbers(frame, "volume"),
                  *pressure = numbers(frame, "pressure"), *id = numbers(frame, "id");
-    FlowColumns columns;
+    FlowParticles particles;
     for (Index p = 0; p < frame.particle("mass")->count; ++p) {
         if (!marked(marks, bed.geometry, position[3 * p], position[3 * p + 1])) continue;
-        columns.x.push_back(position[3 * p]);
-        columns.y.push_back(position[3 * p + 1]);
-        columns.bed.push_back(position[3 * p + 2] - depth[p]);
-        columns.depth.push_back(depth[p]);
-        columns.vx.push_back(velocity[3 * p]);
-        columns.vy.push_back(velocity[3 * p + 1]);
-        columns.mass.push_back(mass[p]);
-        columns.volume.push_back(volume[p]);
-        columns.bed_pressure.push_back(pressure[p]);
-        columns.id.push_back(id[p]);
-        if (!domains.empty()) columns.domain.push_back(domains.at(static_cast<std::size_t>(p)));
+        particles.x.push_back(position[3 * p]);
+        particles.y.push_back(position[3 * p + 1]);
+        particles.bed.push_back(position[3 * p + 2] - depth[p]);
+        particles.depth.push_back(depth[p]);
+        particles.vx.push_back(velocity[3 * p]);
+        particles.vy.push_back(velocity[3 * p + 1]);
+        particles.mass.push_back(mass[p]);
+        particles.volume.push_back(volume[p]);
+        particles.bed_pressure.push_back(pressure[p]);
+        particles.id.push_back(id[p]);
+        if (!domains.empty()) particles.domain.push_back(domains.at(static_cast<std::size_t>(p)));
     }
-    take_slopes(columns, bed);
-    return columns;
+    take_slopes(particles, bed);
+    return particles;
 }
 
-FlowColumns columns_of(const Seeds& seeds, const Scene& scene, const std::vector<std::uint8_t>& marks) {
-    FlowColumns columns;
+FlowParticles particles_of(const Seeds& seeds, const Scene& scene, const std::vector<std::uint8_t>& marks) {
+    FlowParticles particles;
     for (std::size_t p = 0; p < seeds.x.size(); ++p) {
         if (!marks.empty() && !marked(marks, scene.bed.geometry, seeds.x[p], seeds.y[p])) continue;
         const Vec2 slope = bed_gradient(scene.bed, seeds.x[p], seeds.y[p]);
-        columns.x.push_back(seeds.x[p]);
-        columns.y.push_back(seeds.y[p]);
-        columns.bed.push_back(bed_below(scene.bed, seeds.x[p], seeds.y[p]));
-        columns.depth.push_back(seeds.depth[p]);
-        columns.vx.push_back(seeds.vx[p]);
-        columns.vy.push_back(seeds.vy[p]);
-        columns.mass.push_back(seeds.volume[p] * scene.density);
-        columns.volume.push_back(seeds.volume[p]);
-        columns.bed_pressure.push_back(scene.density * scene.gravity * seeds.depth[p] / (1.0 + slope.squaredNorm()));
-        columns.id.push_back(static_cast<double>(p));
+        particles.x.push_back(seeds.x[p]);
+        particles.y.push_back(seeds.y[p]);
+        particles.bed.push_back(bed_below(scene.bed, seeds.x[p], seeds.y[p]));
+        particles.depth.push_back(seeds.depth[p]);
+        particles.vx.push_back(seeds.vx[p]);
+        particles.vy.push_back(seeds.vy[p]);
+        particles.mass.push_back(seeds.volume[p] * scene.density);
+        particles.volume.push_back(seeds.volume[p]);
+        particles.bed_pressure.push_back(scene.density * scene.gravity * seeds.depth[p] / (1.0 + slope.squaredNorm()));
+        particles.id.push_back(static_cast<double>(p));
     }
-    take_slopes(columns, scene.bed);
-    return columns;
+    take_slopes(particles, scene.bed);
+    return particles;
 }
 
 namespace {
 
-/// What a column stands on, and how many parts lie along its edges.
+/// What a particle stands on, and how many parts lie along its edges.
 struct Division {
     Mat2 domain;
     double count[2];
@@ -95,12 +95,12 @@ struct Division {
     double parts() const { return count[0] * count[1]; }
 };
 
-Mat2 domain_of(const FlowColumns& columns, std::size_t k, double widest) {
+Mat2 domain_of(const FlowParticles& particles, std::size_t k, double widest) {
     Mat2 domain;
-    if (!columns.domain.empty())
-        domain = columns.domain[k];
-    else if (columns.depth[k] > 0.0)
-        domain = std::sqrt(columns.volume[k] / columns.depth[k]) * Mat2::Identity();
+    if (!particles.domain.empty())
+        domain = particles.domain[k];
+    else if (particles.depth[k] > 0.0)
+        domain = std::sqrt(particles.volume[k] / particles.depth[k]) * Mat2::Identity();
     else
         domain = widest * Mat2::Identity();
     for (Eigen::Index edge = 0; edge < 2; ++edge) {
@@ -110,11 +110,11 @@ Mat2 domain_of(const FlowColumns& columns, std::size_t k, double widest) {
     return domain;
 }
 
-Division division_of(const FlowColumns& columns, std::size_t k, double spacing, double widest) {
+Division division_of(const FlowParticles& particles, std::size_t k, double spacing, double widest) {
     constexpr double kLeast = 0.125;  // of a full point's volume
-    Division division{domain_of(columns, k, widest), {}};
-    const double layers = static_cast<double>(layer_count(columns.depth[k], spacing));
-    const double most = columns.volume[k] / (layers * kLeast * spacing * spacing * spacing);
+    Division division{domain_of(particles, k, widest), {}};
+    const double layers = static_cast<double>(layer_count(particles.depth[k], spacing));
+    const double most = particles.volume[k] / (layers * kLeast * spacing * spacing * spacing);
     double wanted[2];
     for (int edge = 0; edge < 2; ++edge)
         wanted[edge] = std::max(1.0, std::round(division.domain.col(edge).norm() / spacing));
@@ -129,21 +129,21 @@ Division division_of(const FlowColumns& columns, std::size_t k, double spacing, 
 
 }  // namespace
 
-PartsForecast forecast_parts(const FlowColumns& columns, double spacing, double widest) {
+PartsForecast forecast_parts(const FlowParticles& particles, double spacing, double widest) {
     PartsForecast sum;
-    for (std::size_t k = 0; k < columns.count(); ++k) {
-        const double parts = division_of(columns, k, spacing, widest).parts();
-        sum.columns += parts;
-        sum.points += parts * static_cast<double>(layer_count(columns.depth[k], spacing));
+    for (std::size_t k = 0; k < particles.count(); ++k) {
+        const double parts = division_of(particles, k, spacing, widest).parts();
+        sum.particles += parts;
+        sum.points += parts * static_cast<double>(layer_count(particles.depth[k], spacing));
     }
     return sum;
 }
 
-FlowColumns in_parts(const FlowColumns& columns, double spacing, double widest, const Raster& bed,
-                     const std::array<double, 4>& extent) {
-    FlowColumns parts;
-    for (std::size_t k = 0; k < columns.count(); ++k) {
-        const Division division = division_of(columns, k, spacing, widest);
+FlowParticles in_parts(const FlowParticles& particles, double spacing, double widest, const Raster& bed,
+                       const std::array<double, 4>& extent) {
+    FlowParticles parts;
+    for (std::size_t k = 0; k < particles.count(); ++k) {
+        const Division division = division_of(particles, k, spacing, widest);
         const double share = 1.0 / division.parts();
         const auto along = [&](int edge, Index m) {
             return (static_cast<double>(m) + 0.5) / division.count[edge] - 0.5;
@@ -151,9 +151,9 @@ FlowColumns in_parts(const FlowColumns& columns, double spacing, double widest, 
         for (Index j = 0; j < static_cast<Index>(division.count[1]); ++j)
             for (Index i = 0; i < static_cast<Index>(division.count[0]); ++i) {
                 const Vec2 away = division.domain * Vec2(along(0, i), along(1, j));
-                parts.take(columns, k);
-                parts.x.back() = std::clamp(columns.x[k] + away[0], extent[0], extent[2]);
-                parts.y.back() = std::clamp(columns.y[k] + away[1], extent[1], extent[3]);
+                parts.take(particles, k);
+                parts.x.back() = std::clamp(particles.x[k] + away[0], extent[0], extent[2]);
+                parts.y.back() = std::clamp(particles.y[k] + away[1], extent[1], extent[3]);
                 const double ground = bed_below(bed, parts.x.back(), parts.y.back());
                 if (std::isfinite(ground)) parts.bed.back() = ground;
                 parts.mass.back() *= share;
@@ -164,7 +164,7 @@ FlowColumns in_parts(const FlowColumns& columns, double spacing, double widest, 
     return parts;
 }
 
-MovingColumns columns_of(const std::vector<DepartedPoint>& points, const Scene& scene, const ColumnsAt& at) {
+MovingParticles particles_of(const std::vector<DepartedPoint>& points, const Scene& scene, const ParticlesAt& at) {
     struct Sum {
         double mass = 0.0;
         Vec2 moment{0, 0}, momentum{0, 0};
@@ -183,8 +183,8 @@ MovingColumns columns_of(const std::vector<DepartedPoint>& points, const Scene& 
         sum.momentum += point.mass * v;
         sum.gradient += point.mass * point.gradient.topLeftCorner<2, 2>();
     }
-    MovingColumns columns;
-    Seeds& seeds = columns.seeds;
+    MovingParticles particles;
+    Seeds& seeds = particles.seeds;
     for (const auto& [quarter, sum] : quarters) {
         const Vec2 x = sum.moment / sum.mass, v = sum.momentum / sum.mass;
         const double volume = sum.mass / scene.density;
@@ -192,17 +192,17 @@ MovingColumns columns_of(const std::vector<DepartedPoint>& points, const Scene& 
         seeds.vx.push_back(v.x()), seeds.vy.push_back(v.y());
         seeds.volume.push_back(volume), seeds.size.push_back(size);
         seeds.depth.push_back(std::max(at.depth(x), volume / (size * size)));
-        columns.gradient.push_back(sum.gradient / sum.mass);
+        particles.gradient.push_back(sum.gradient / sum.mass);
     }
-    return columns;
+    return particles;
 }
 
-SolidSeeds seeds_of(const FlowColumns& columns, const SolidStage& stage) {
+SolidSeeds seeds_of(const FlowParticles& particles, const SolidStage& stage) {
     ConversionChoice choice;
     choice.spacing = stage.spacing;
     choice.profile = stage.profile;
     choice.vertical = stage.along_bed ? Vertical::along_bed : Vertical::zero;
-    const SolidPoints points = columns_to_points(columns, choice);
+    const SolidPoints points = particles_to_points(particles, choice);
     SolidSeeds seeds;
     for (std::size_t k = 0; k < points.count(); ++k) {
         const double *x = &points.position[3 * k], *v = &points.velocity[3 * k];
@@ -211,10 +211,10 @@ SolidSeeds seeds_of(const FlowColumns& columns, const SolidStage& stage) {
     return seeds;
 }
 
-std::vector<std::size_t> parts_of_seeds(const FlowColumns& columns, const SolidStage& stage) {
+std::vector<std::size_t> parts_of_seeds(const FlowParticles& particles, const SolidStage& stage) {
     std::vector<std::size_t> parts;
-    for (std::size_t k = 0; k < columns.count(); ++k)
-        parts.insert(parts.end(), static_cast<std::size_t>(layer_count(columns.depth[k], stage.spacing)), k);
+    for (std::size_t k = 0; k < particles.count(); ++k)
+        parts.insert(parts.end(), static_cast<std::size_t>(layer_count(particles.depth[k], stage.spacing)), k);
     return parts;
 }
 

@@ -1,5 +1,5 @@
-// What columns and points show each other at the window's edge. Points feel the columns beyond it as they feel points:
-// their mass, motion and hydrostatic pressure. Columns feel how high points stand.
+// What particles and points show each other at the window's edge. Points feel the particles beyond it as they feel
+// points: their mass, motion and hydrostatic pressure. Particles feel how high points stand.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace frana {
 namespace {
 
 /// Adds to nodes along an axis. Beyond walls it adds to the mirror node. To a node on a wall it adds its own mirror
-/// part too, as columns deposit there. Beyond open sides nothing.
+/// part too, as particles deposit there. Beyond open sides nothing.
 struct Along {
     Index node[3];
     double w[3];
@@ -32,8 +32,8 @@ struct Along {
 
 }  // namespace
 
-/// Their volume without pressure over the area of a cell, by quadratic shape functions as columns have by default. One
-/// thread: there are many steps of points in one of columns.
+/// Their volume without pressure over the area of a cell, by quadratic shape functions as particles have by default.
+/// One thread: there are many steps of points in one of particles.
 void StagedRun::show_points() {
     timed_("edge", [&] {
         const GridGeometry& g = scene_.bed.geometry;
@@ -52,14 +52,14 @@ void StagedRun::show_points() {
                     depth[static_cast<std::size_t>(v.node[j] * g.nx + u.node[i])] +=
                         scale * q.mass[p] * u.w[i] * v.w[j];
         }
-        columns_->set_adjacent(depth);
+        particles_->set_adjacent(depth);
     });
 }
 
 /// Those on their way into the window first, in their order; then those around it. And the gradients of their
-/// velocities. Columns farther on are faster. Without the gradients the nodes that both sides share would take that for
-/// a force.
-FlowColumns StagedRun::columns_at_edge(std::vector<Mat2>& gradients) const {
+/// velocities. Particles farther on are faster. Without the gradients the nodes that both sides share would take that
+/// for a force.
+FlowParticles StagedRun::particles_at_edge(std::vector<Mat2>& gradients) const {
     const GridGeometry& g = scene_.bed.geometry;
     Seeds seeds;
     std::vector<Mat2> domains;
@@ -70,15 +70,15 @@ FlowColumns StagedRun::columns_at_edge(std::vector<Mat2>& gradients) const {
         domains.push_back(domain_of(edges, g.cell));
     };
     gradients.clear();
-    for (const Departed& column : pending_) {
-        add(column.x, column.y, column.vx, column.vy, column.mass, column.depth, column.edges);
-        gradients.push_back(Mat2(column.gradient.data()));
+    for (const Departed& particle : pending_) {
+        add(particle.x, particle.y, particle.vx, particle.vy, particle.mass, particle.depth, particle.edges);
+        gradients.push_back(Mat2(particle.gradient.data()));
     }
     const auto at_edge = [&](double x, double y) {
         const auto i = static_cast<Index>(std::floor(x + 0.5)), j = static_cast<Index>(std::floor(y + 0.5));
         return at_edge_[static_cast<std::size_t>(j * g.nx + i)] != 0;
     };
-    const Columns& c = columns_->flow().columns;
+    const Particles& c = particles_->flow().particles;
     c.with_real([&](auto real) {
         const auto& held = c.carried<decltype(real)>();
         for (Index p = 0; p < c.count(); ++p) {
@@ -89,23 +89,23 @@ FlowColumns StagedRun::columns_at_edge(std::vector<Mat2>& gradients) const {
             gradients.push_back(gradient);
         }
     });
-    FlowColumns columns = columns_of(seeds, scene_, {});
-    if (!scene_.scheme.paper_pressure) columns.domain = std::move(domains);
-    take_start_pressure(columns, scene_);
-    return columns;
+    FlowParticles particles = particles_of(seeds, scene_, {});
+    if (!scene_.scheme.paper_pressure) particles.domain = std::move(domains);
+    take_start_pressure(particles, scene_);
+    return particles;
 }
 
-/// They are the points that they will be beyond the edge, but each with the column's velocity at its place. What
+/// They are the points that they will be beyond the edge, but each with the particle's velocity at its place. What
 /// widens sinks, as it does in nature, in proportion to the height above the bed.
-GhostParticles StagedRun::ghosts_of(const FlowColumns& columns, const std::vector<Mat2>& gradients) const {
+GhostParticles StagedRun::ghosts_of(const FlowParticles& particles, const std::vector<Mat2>& gradients) const {
     const GridGeometry& g = scene_.bed.geometry;
-    const FlowColumns parts =
-        in_parts(columns, scene_.solid->spacing, g.cell, scene_.bed, {g.x0, g.y0, g.x_max(), g.y_max()});
+    const FlowParticles parts =
+        in_parts(particles, scene_.solid->spacing, g.cell, scene_.bed, {g.x0, g.y0, g.x_max(), g.y_max()});
     const std::vector<std::size_t> part_of = parts_of_seeds(parts, *scene_.solid);
-    GhostParticles ghosts{seeds_of(parts, *scene_.solid), {}, columns_->status().time, columns_->status().dt};
+    GhostParticles ghosts{seeds_of(parts, *scene_.solid), {}, particles_->status().time, particles_->status().dt};
     for (std::size_t k = 0; k < part_of.size(); ++k) {
-        const std::size_t part = part_of[k], column = static_cast<std::size_t>(parts.id[part]);
-        const Mat2& c = gradients[column];
+        const std::size_t part = part_of[k], particle = static_cast<std::size_t>(parts.id[part]);
+        const Mat2& c = gradients[particle];
         const Vec2 slope(parts.slope_x[part], parts.slope_y[part]);
         Mat3 gradient = Mat3::Zero();
         gradient.topLeftCorner<2, 2>() = c;
@@ -113,18 +113,18 @@ GhostParticles StagedRun::ghosts_of(const FlowColumns& columns, const std::vecto
         gradient(2, 2) = -c.trace();
         const Vec3 x = ghosts.seeds.position[k];
         ghosts.seeds.velocity[k] +=
-            gradient * Vec3(x[0] - columns.x[column], x[1] - columns.y[column], x[2] - parts.bed[part]);
+            gradient * Vec3(x[0] - particles.x[particle], x[1] - particles.y[particle], x[2] - parts.bed[part]);
         ghosts.gradient.push_back(gradient);
     }
     return ghosts;
 }
 
-void StagedRun::show_columns() {
+void StagedRun::show_particles() {
     timed_("edge", [&] {
         std::vector<Mat2> gradients;
-        const FlowColumns columns = columns_at_edge(gradients);
-        points_->set_adjacent(ghosts_of(columns, gradients));
-        map_.set_adjacent(columns);
+        const FlowParticles particles = particles_at_edge(gradients);
+        points_->set_adjacent(ghosts_of(particles, gradients));
+        map_.set_adjacent(particles);
     });
 }
 

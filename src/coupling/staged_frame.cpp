@@ -1,4 +1,4 @@
-// What a run in stages shows: fields of columns and points together, and of the nodes that both stand on.
+// What a run in stages shows: fields of particles and points together, and of the nodes that both stand on.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -11,13 +11,13 @@
 namespace frana {
 
 Frame StagedRun::frame() {
-    if (!points_) return columns_->frame();
-    Frame frame = columns_->frame();
+    if (!points_) return particles_->frame();
+    Frame frame = particles_->frame();
     store_.begin();
     timed_("frame", [&] {
         const Status now = status_;
         const double mach = largest_mach_;
-        accumulate(frame.status);  // of the columns at the points' time
+        accumulate(frame.status);  // of the particles at the points' time
         frame.status = status_;
         frame.status.step = now.step;
         status_ = now, largest_mach_ = mach;
@@ -28,17 +28,17 @@ Frame StagedRun::frame() {
     return frame;
 }
 
-/// Columns retain what they have of the fields that both share; stress is xx, yy, zz, xy, yz, xz.
+/// Particles retain what they have of the fields that both share; stress is xx, yy, zz, xy, yz, xz.
 void StagedRun::particle_fields(Frame& frame) {
-    const std::vector<Field> columns = std::move(frame.particles);
+    const std::vector<Field> particles = std::move(frame.particles);
     frame.particles.clear();
-    const Index before = columns.empty() ? 0 : columns.front().count, more = points_->status().points;
+    const Index before = particles.empty() ? 0 : particles.front().count, more = points_->status().points;
     const Index count = before + more;
     ParticleFields shared(store_, frame.particles, count);
     for (const Field& field : frame.particles) {
         const auto found =
-            std::find_if(columns.begin(), columns.end(), [&](const Field& of) { return of.name == field.name; });
-        expect(found != columns.end(), "columns have the quantities that points share");
+            std::find_if(particles.begin(), particles.end(), [&](const Field& of) { return of.name == field.name; });
+        expect(found != particles.end(), "particles have the quantities that points share");
         std::copy_n(found->data, before * found->components, const_cast<double*>(field.data));  // made just now
     }
     double* const model = store_.zeros(frame.particles, "model", "1", 1, count) + before;
@@ -58,7 +58,7 @@ void StagedRun::particle_fields(Frame& frame) {
 }
 
 /// Depths and pressures of both add; velocities are those of their common momentum. Only nodes that points can give to
-/// change, where they are: in the memory of the columns' frame, which nobody else has and their next one writes anew.
+/// change, where they are: in the memory of the particles' frame, which nobody else has and their next one writes anew.
 void StagedRun::node_fields(Frame& frame) {
     const GridGeometry& g = scene_.bed.geometry;
     const NodeBox& box = map_.nodes();
@@ -77,12 +77,12 @@ void StagedRun::node_fields(Frame& frame) {
     const auto most = [&](const char* name, double NodePeak::*peak) {
         each(name, [&](double* value, Index m) { *value = std::max(*value, map_.peak(m).*peak); });
     };
-    std::vector<double> before;  // of columns
+    std::vector<double> before;  // of particles
     before.reserve(static_cast<std::size_t>(box.nx * box.ny));
     each("depth", [&](double* depth, Index m) { before.push_back(*depth), *depth += map_.depth(m); });
     const auto depths = [&](Index m) {
-        const double of_columns = before[static_cast<std::size_t>(m)];
-        return std::pair(of_columns, of_columns + map_.depth(m));
+        const double of_particles = before[static_cast<std::size_t>(m)];
+        return std::pair(of_particles, of_particles + map_.depth(m));
     };
     more("surface", [&](Index m) { return map_.depth(m); });
     more("thickness", [&](Index m) { return map_.depth(m) * map_.cosine(m); });
@@ -96,13 +96,14 @@ void StagedRun::node_fields(Frame& frame) {
         *time = *time < 0.0 ? here : here < 0.0 ? *time : std::min(*time, here);
     });
     each("velocity", [&](double* value, Index m) {
-        const auto [of_columns, all] = depths(m);
+        const auto [of_particles, all] = depths(m);
         const Vec3 v = map_.velocity(m);
-        for (Index c = 0; c < 3 && all > 0.0; ++c) value[c] = (of_columns * value[c] + (all - of_columns) * v[c]) / all;
+        for (Index c = 0; c < 3 && all > 0.0; ++c)
+            value[c] = (of_particles * value[c] + (all - of_particles) * v[c]) / all;
     });
     each("speed", [&](double* speed, Index m) {
-        const auto [of_columns, all] = depths(m);
-        *speed = all > 0.0 ? (of_columns * *speed + (all - of_columns) * map_.velocity(m).norm()) / all : 0.0;
+        const auto [of_particles, all] = depths(m);
+        *speed = all > 0.0 ? (of_particles * *speed + (all - of_particles) * map_.velocity(m).norm()) / all : 0.0;
     });
     if (ended_) return;
     each("elevation", [&](double* elevation, Index m) {

@@ -1,4 +1,4 @@
-// Points of a run in stages that become columns again: those that leave their window, and in the end all.
+// Points of a run in stages that become particles again: those that leave their window, and in the end all.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,30 +22,30 @@ bool in_hole_wall(const Flow& flow, const Vec2& x) {
 
 }  // namespace
 
-/// Of the points that left, those that left where columns may stand. That is beyond the window's open sides, or onto a
-/// wall in a hole there, before which they then stand. Until they are columns the others go on to feel them.
+/// Of the points that left, those that left where particles may stand. That is beyond the window's open sides, or onto
+/// a wall in a hole there, before which they then stand. Until they are particles the others go on to feel them.
 void StagedRun::note_departed() {
     for (const DepartedPoint& point : points_->take_departed()) {
         const Vec2 x = point.position.head<2>();
-        if (!columns_->may_stand(x.x(), x.y()) && !in_hole_wall(columns_->flow(), x)) continue;
+        if (!particles_->may_stand(x.x(), x.y()) && !in_hole_wall(particles_->flow(), x)) continue;
         returning_.push_back(point);
         points_->set_adjacent(point);
     }
 }
 
-/// Where a point has come to, or where it left if columns may not stand there.
+/// Where a point has come to, or where it left if particles may not stand there.
 Vec2 StagedRun::where_allowed(const DepartedPoint& point, const Vec2& to) const {
-    return columns_->may_stand(to.x(), to.y()) ? to : Vec2(point.position.head<2>());
+    return particles_->may_stand(to.x(), to.y()) ? to : Vec2(point.position.head<2>());
 }
 
-/// Where a column of a point that has come to `to` stands. It is there, or where it left. A barrier may raise the
-/// ground of columns that the point is not above. Or a hole may have a wall. Then it is before them on its own side.
-/// Where the window ends near a barrier and columns have no cell there, it is one of the window. They leave that again
-/// in their next step: on the barrier they would gain its height. Not so before a hole. Points do not feel its wall,
-/// and would run down the same cells again and again.
-Vec2 StagedRun::place_of_column(const DepartedPoint& point, const Vec2& to) {
+/// Where a particle of a point that has come to `to` stands. It is there, or where it left. A barrier may raise the
+/// ground of particles that the point is not above. Or a hole may have a wall. Then it is before them on its own side.
+/// Where the window ends near a barrier and particles have no cell there, it is one of the window. They leave that
+/// again in their next step: on the barrier they would gain its height. Not so before a hole. Points do not feel its
+/// wall, and would run down the same cells again and again.
+Vec2 StagedRun::place_of_particle(const DepartedPoint& point, const Vec2& to) {
     Vec2 x = where_allowed(point, to);
-    const Flow& flow = columns_->flow();
+    const Flow& flow = particles_->flow();
     const bool at_hole = in_hole_wall(flow, x);
     if (!at_hole && (!on_raised(x) || above_barrier(x))) return x;
     const auto nearest = [&](std::uint8_t kind) {
@@ -69,7 +69,8 @@ bool StagedRun::on_raised(const Vec2& x) const {
     return is_raised(i, j);
 }
 
-/// Whether a point's column may stand at x: on the terrain, in an allowed cell that no barrier raises or hides from it.
+/// Whether a point's particle may stand at x: on the terrain, in an allowed cell that no barrier raises or hides from
+/// it.
 bool StagedRun::may_stand(const DepartedPoint& point, const Vec2& x, const Allowed& allowed) const {
     const GridGeometry& g = scene_.bed.geometry;
     const auto [i, j] = nearest_node(g, x);
@@ -145,9 +146,9 @@ bool StagedRun::behind_barrier(const Vec3& from, const Vec2& place) const {
                        [&](const Surface& s) { return s.is_barrier() && enters(s, from, to, entry); });
 }
 
-/// How much of a point its column has room for where it stands on the ramp of a barrier [1]: what is above it.
+/// How much of a point its particle has room for where it stands on the ramp of a barrier [1]: what is above it.
 double StagedRun::share_above_ramp(const DepartedPoint& point, const Vec2& x) const {
-    const double size = std::cbrt(point.mass / scene_.density), ground = columns_->at(x).elevation;
+    const double size = std::cbrt(point.mass / scene_.density), ground = particles_->at(x).elevation;
     return std::clamp(0.5 + (point.position.z() - ground) / size, 0.0, 1.0);
 }
 
@@ -155,7 +156,7 @@ double StagedRun::share_above_ramp(const DepartedPoint& point, const Vec2& x) co
 /// moved to the nearest cell before it, and spreads from there. A cell that holds points goes before a dry one.
 void StagedRun::clear_ramps() {
     const GridGeometry& g = scene_.bed.geometry;
-    const Flow& flow = columns_->flow();
+    const Flow& flow = particles_->flow();
     const auto is_open = [&](Index i, Index j) { return !is_raised(i, j) && flow.bed.exit[flow.grid.at(i, j)] == 0; };
     Displaced displaced(g, scene_.density, [&](Index node) {
         const Index i = node % g.nx, j = node / g.nx;
@@ -208,25 +209,25 @@ void StagedRun::clear_ramps() {
     returning_.insert(returning_.end(), stay.begin(), stay.end());
 }
 
-/// They become columns. What these have no place for, motion up and down and against each other, is lost.
+/// They become particles. What these have no place for, motion up and down and against each other, is lost.
 void StagedRun::convert_to_2d(const PlaceOf& place) {
     const double time = points_->status().time;
     note_largest();
     for (const DepartedPoint& point : returning_) returned_.mass += point.mass, returned_.lost += point.energy;
-    const MovingColumns columns =
-        columns_of(returning_, scene_, {time, place, [&](const Vec2& x) { return columns_->at(x).depth; }});
-    returned_.lost -= columns_->take_in(columns.seeds, columns.gradient, time);
+    const MovingParticles particles =
+        particles_of(returning_, scene_, {time, place, [&](const Vec2& x) { return particles_->at(x).depth; }});
+    returned_.lost -= particles_->take_in(particles.seeds, particles.gradient, time);
     returning_.clear();
 }
 
-/// All points become columns, and the window is a part of the map like any other.
+/// All points become particles, and the window is a part of the map like any other.
 void StagedRun::end_3d() {
     timed_("3D to 2D", [&] {
         note_largest();
         points_->set_adjacent(GhostParticles{});
         points_->leave();
-        columns_->close_exits();
-        columns_->catch_up();
+        particles_->close_exits();
+        particles_->catch_up();
         std::vector<DepartedPoint> all = points_->take_departed();
         if (returning_.empty())
             returning_ = std::move(all);
@@ -235,7 +236,7 @@ void StagedRun::end_3d() {
         if (!raised_.empty()) clear_ramps();
         convert_to_2d([&](const DepartedPoint& point, const Vec2& to) {
             const Vec2 x = where_allowed(point, to);
-            return in_hole_wall(columns_->flow(), x) ? place_of_column(point, to) : x;
+            return in_hole_wall(particles_->flow(), x) ? place_of_particle(point, to) : x;
         });
         returning_.shrink_to_fit();
         ended_ = true;
@@ -244,7 +245,7 @@ void StagedRun::end_3d() {
         map_.sample(*points_, points_->status().time);
         if (!watch_) return;
         watch_->end();
-        sample_columns();
+        sample_particles();
     });
 }
 

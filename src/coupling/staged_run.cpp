@@ -18,8 +18,8 @@ namespace frana {
 
 namespace {
 
-/// The scene of the columns: to them barriers are ground.
-Scene of_columns(Scene scene, Footings& footings) {
+/// The scene of the particles: to them barriers are ground.
+Scene of_particles(Scene scene, Footings& footings) {
     if (!scene.barriers.empty()) footings = stand_in(scene, barrier_nodes(scene), 0, 0);
     return scene;
 }
@@ -28,41 +28,42 @@ Scene of_columns(Scene scene, Footings& footings) {
 
 StagedRun::StagedRun(const Scene& scene, Start start)
     : scene_(scene),
-      columns_(std::make_unique<DepthAveraged>(of_columns(scene, footings_), start)),
+      particles_(std::make_unique<DepthAveraged>(of_particles(scene, footings_), start)),
       map_(scene),
       spray_(scene) {
     expect(scene.solid.has_value(), "a staged run has a 3D stage");
     if (!scene.barriers.empty()) {
         mark_raised();
-        columns_->note_parents();
-        columns_watch_.emplace(scene_);
+        particles_->note_parents();
+        particles_watch_.emplace(scene_);
     }
     scene_.particles = {};
-    status_ = columns_->status();
+    status_ = particles_->status();
     if (start == Start::placed && scene.solid->from == 0.0)
-        begin_3d([&](const Marks& marks) { return columns_of(scene.particles, scene, marks); });
+        begin_3d([&](const Marks& marks) { return particles_of(scene.particles, scene, marks); });
 }
 
-/// One step of the model in charge: columns until their stage ends; then points; then, perhaps, columns.
+/// One step of the model in charge: particles until their stage ends; then points; then, perhaps, particles.
 void StagedRun::advance(double until) {
     if (!points_) {
         const double before = status_.time;
-        columns_->advance(std::min(until, scene_.solid->from));
-        watch_columns(before, until);
-        status_ = columns_->status();
+        particles_->advance(std::min(until, scene_.solid->from));
+        watch_particles(before, until);
+        status_ = particles_->status();
         if (status_.time < scene_.solid->from) return;
-        const std::vector<Mat2> domains = domains_of(columns_->flow().columns, scene_.bed.geometry.cell, scene_.scheme);
-        begin_3d([&](const Marks& marks) { return columns_of(columns_->frame(), domains, scene_.bed, marks); });
+        const std::vector<Mat2> domains =
+            domains_of(particles_->flow().particles, scene_.bed.geometry.cell, scene_.scheme);
+        begin_3d([&](const Marks& marks) { return particles_of(particles_->frame(), domains, scene_.bed, marks); });
         return;
     }
     const auto count = [&] {
         status_.step += 1;
-        accumulate(columns_->status());
+        accumulate(particles_->status());
     };
     const double end = scene_.solid->until.value_or(until);
     try {
         if (ended_)
-            step_columns_alone(until);
+            step_particles_alone(until);
         else
             step_points(std::min(until, end));
         if (!ended_ && scene_.solid->until && points_->status().time >= end) end_3d();
@@ -73,35 +74,36 @@ void StagedRun::advance(double until) {
     count();
 }
 
-void StagedRun::step_columns_alone(double until) {
-    const double before = columns_->status().time;
-    columns_->advance(until);
-    watch_columns(before, until);
+void StagedRun::step_particles_alone(double until) {
+    const double before = particles_->status().time;
+    particles_->advance(until);
+    watch_particles(before, until);
 }
 
-/// After a step of columns: what they do to barriers adds to what points do.
-void StagedRun::watch_columns(double before, double until) {
-    if (columns_watch_ && columns_watch_->is_due(*columns_, before, until)) timed_("map", [&] { sample_columns(); });
+/// After a step of particles: what they do to barriers adds to what points do.
+void StagedRun::watch_particles(double before, double until) {
+    if (particles_watch_ && particles_watch_->is_due(*particles_, before, until))
+        timed_("map", [&] { sample_particles(); });
 }
 
-void StagedRun::sample_columns() {
-    const BarrierLoads before = columns_watch_->loads();
-    columns_watch_->sample_columns(*columns_, scene_.density);
-    if (watch_) watch_->add(before, columns_watch_->loads());
+void StagedRun::sample_particles() {
+    const BarrierLoads before = particles_watch_->loads();
+    particles_watch_->sample_particles(*particles_, scene_.density);
+    if (watch_) watch_->add(before, particles_watch_->loads());
 }
 
-/// Columns that are left go a step ahead of the points. So what flows into the window is there when the points arrive
+/// Particles that are left go a step ahead of the points. So what flows into the window is there when the points arrive
 /// at that time.
 void StagedRun::step_points(double until) {
-    if (columns_->status().time <= points_->status().time) step_columns(until);
-    const bool alone = columns_->status().particles == 0 && pending_.empty();
-    points_->advance(alone ? until : std::min(until, columns_->status().time));
+    if (particles_->status().time <= points_->status().time) step_particles(until);
+    const bool alone = particles_->status().particles == 0 && pending_.empty();
+    points_->advance(alone ? until : std::min(until, particles_->status().time));
     note_departed();
-    if (alone || points_->status().time == columns_->status().time) {
+    if (alone || points_->status().time == particles_->status().time) {
         convert_to_3d();
         if (!returning_.empty())
             timed_("3D to 2D", [&] {
-                convert_to_2d([&](const DepartedPoint& point, const Vec2& to) { return place_of_column(point, to); });
+                convert_to_2d([&](const DepartedPoint& point, const Vec2& to) { return place_of_particle(point, to); });
             });
     }
     for (const Mpm3d::Birth& birth : points_->take_births())
@@ -111,33 +113,33 @@ void StagedRun::step_points(double until) {
     sample(until);
 }
 
-/// Columns in the window become points, those outside stay; none of them is in both.
-void StagedRun::begin_3d(const std::function<FlowColumns(const Marks&)>& columns_at) {
-    const Status before = columns_->status();
+/// Particles in the window become points, those outside stay; none of them is in both.
+void StagedRun::begin_3d(const std::function<FlowParticles(const Marks&)>& particles_at) {
+    const Status before = particles_->status();
     timed_("2D to 3D", [&] {
         const Marks inside = nodes_in_window(scene_), everywhere(inside.size(), 1);
-        start_ = choose_start(scene_, columns_at(everywhere));  // what is outside still comes
+        start_ = choose_start(scene_, particles_at(everywhere));  // what is outside still comes
         SolidScene space = space_of_stage();
-        FlowColumns columns = columns_at(inside);
-        take_start_pressure(columns, scene_);
-        space.points = seeds_of_window(columns, space.surfaces);
+        FlowParticles particles = particles_at(inside);
+        take_start_pressure(particles, scene_);
+        space.points = seeds_of_window(particles, space.surfaces);
         points_ = std::make_unique<Mpm3d>(space);
         points_->start_at(scene_.solid->from);
         points_->note_departed();
-        if (columns_watch_) begin_watch();
+        if (particles_watch_) begin_watch();
         at_edge_ = nodes_at_edge(scene_);
         note_largest();
-        columns_->open_exits(inside, true);
+        particles_->open_exits(inside, true);
     });
-    const Status& now = columns_->status();  // what they gave counts as left
+    const Status& now = particles_->status();  // what they gave counts as left
     converted_.mass = now.mass_left - before.mass_left;
     converted_.energy = now.energy_left - before.energy_left;
-    // Points from the start on are what sums begin with: the release never stood on the ramp of a barrier as columns.
+    // Points from the start on are what sums begin with: the release never stood on the ramp of a barrier as particles.
     converted_.lost = scene_.solid->from > 0.0 ? converted_.energy - points_->status().energy_given : 0.0;
     for (std::size_t axis = 0; axis < 2; ++axis)
         converted_.momentum[axis] = now.momentum_left[axis] - before.momentum_left[axis];
     sample(points_->status().time);
-    accumulate(columns_->status());
+    accumulate(particles_->status());
 }
 
 void StagedRun::begin_watch() {
@@ -145,7 +147,7 @@ void StagedRun::begin_watch() {
     watch_->note_start(*points_);
     BarrierLoads none;
     none.barriers.resize(scene_.barriers.size());
-    watch_->add(none, columns_watch_->loads());
+    watch_->add(none, particles_watch_->loads());
 }
 
 /// The ground comes first; it brakes by the bed law, where that depends on speed.
@@ -157,11 +159,11 @@ SolidScene StagedRun::space_of_stage() const {
 }
 
 /// Refuses what does not fit into memory before it is allocated.
-void StagedRun::require_room(const FlowColumns& columns) const {
+void StagedRun::require_room(const FlowParticles& particles) const {
     // Of a point: its numbers, room to sort, and both forms while it is converted. At the end it is converted back as well.
-    const double per_point = scene_.solid->until ? 600.0 : 450.0, per_column = 160.0;
-    const PartsForecast parts = forecast_parts(columns, scene_.solid->spacing, scene_.bed.geometry.cell);
-    const double bytes = parts.columns * per_column + parts.points * per_point, free = free_memory();
+    const double per_point = scene_.solid->until ? 600.0 : 450.0, per_particle = 160.0;
+    const PartsForecast parts = forecast_parts(particles, scene_.solid->spacing, scene_.bed.geometry.cell);
+    const double bytes = parts.particles * per_particle + parts.points * per_point, free = free_memory();
     if (bytes <= free) return;
     throw UserError(
         fmt::format("stage.spacing = {:.6g}: makes {:.3g} points, about {:.3g} GB; expected what fits into "
@@ -171,60 +173,60 @@ void StagedRun::require_room(const FlowColumns& columns) const {
 }
 
 /// Refuses what does not fit below the top of the space.
-void StagedRun::require_below_top(const FlowColumns& columns) const {
-    for (std::size_t k = 0; k < columns.count(); ++k)
-        if (columns.bed[k] + columns.depth[k] > start_.top)
+void StagedRun::require_below_top(const FlowParticles& particles) const {
+    for (std::size_t k = 0; k < particles.count(); ++k)
+        if (particles.bed[k] + particles.depth[k] > start_.top)
             throw UserError(
                 fmt::format("stage.top: found {:.6g} m; expected more than the {:.6g} m that material "
                             "reaches at x {:.10g}, y {:.10g}, "
                             "t = {:.6g} s; give a higher top",
-                            start_.top, columns.bed[k] + columns.depth[k], columns.x[k], columns.y[k],
-                            std::max(columns_->status().time, scene_.solid->from)));
+                            start_.top, particles.bed[k] + particles.depth[k], particles.x[k], particles.y[k],
+                            std::max(particles_->status().time, scene_.solid->from)));
 }
 
-SolidSeeds StagedRun::seeds_of_window(const FlowColumns& columns, const std::vector<Surface>& surfaces) {
-    require_room(columns);
-    FlowColumns parts =
-        in_parts(columns, scene_.solid->spacing, scene_.bed.geometry.cell, scene_.bed, reach_of(scene_));
+SolidSeeds StagedRun::seeds_of_window(const FlowParticles& particles, const std::vector<Surface>& surfaces) {
+    require_room(particles);
+    FlowParticles parts =
+        in_parts(particles, scene_.solid->spacing, scene_.bed.geometry.cell, scene_.bed, reach_of(scene_));
     stand_on_barriers(parts, surfaces);
     require_below_top(parts);
-    for (std::size_t k = 0; k < columns.count(); ++k)
-        became_points_ += columns.mass[k], their_depth_ += columns.mass[k] * columns.depth[k];
+    for (std::size_t k = 0; k < particles.count(); ++k)
+        became_points_ += particles.mass[k], their_depth_ += particles.mass[k] * particles.depth[k];
     return seeds_of(parts, *scene_.solid);
 }
 
-void StagedRun::step_columns(double until) {
-    if (columns_->status().particles == 0) {
+void StagedRun::step_particles(double until) {
+    if (particles_->status().particles == 0) {
         points_->set_adjacent(GhostParticles{});
-        map_.set_adjacent(FlowColumns{});
+        map_.set_adjacent(FlowParticles{});
         return;
     }
     show_points();
-    const double before = columns_->status().time;
-    columns_->advance(until);
-    watch_columns(before, until);
-    pending_ = columns_->take_departed();
-    for (const Departed& column : pending_) {
-        converted_.mass += column.mass, converted_.mass_later += column.mass;
-        converted_.energy += column.energy;
-        converted_.momentum[0] += column.mass * column.vx, converted_.momentum[1] += column.mass * column.vy;
+    const double before = particles_->status().time;
+    particles_->advance(until);
+    watch_particles(before, until);
+    pending_ = particles_->take_departed();
+    for (const Departed& particle : pending_) {
+        converted_.mass += particle.mass, converted_.mass_later += particle.mass;
+        converted_.energy += particle.energy;
+        converted_.momentum[0] += particle.mass * particle.vx, converted_.momentum[1] += particle.mass * particle.vy;
     }
-    show_columns();
+    show_particles();
 }
 
-/// The columns that flowed into the window in the columns' last step.
+/// The particles that flowed into the window in the particles' last step.
 void StagedRun::convert_to_3d() {
     if (pending_.empty()) return;
     timed_("2D to 3D", [&] {
         std::vector<Mat2> gradients;
-        const FlowColumns all = columns_at_edge(gradients);
-        FlowColumns columns;
-        for (std::size_t k = 0; k < pending_.size(); ++k) columns.take(all, k);
+        const FlowParticles all = particles_at_edge(gradients);
+        FlowParticles particles;
+        for (std::size_t k = 0; k < pending_.size(); ++k) particles.take(all, k);
         const SolidSeeds seeds =
-            seeds_of_window(columns, points_->body().surfaces);  // may be refused, with all still here
+            seeds_of_window(particles, points_->body().surfaces);  // may be refused, with all still here
         const double given = points_->status().energy_given;
         points_->add(seeds);
-        for (const Departed& column : pending_) converted_.lost += column.energy;
+        for (const Departed& particle : pending_) converted_.lost += particle.energy;
         converted_.lost -= points_->status().energy_given - given;
         pending_.clear();
     });
@@ -248,20 +250,20 @@ void StagedRun::sample(double until) {
 
 /// To be called before material passes from one model to the other, and the map forgets it.
 void StagedRun::note_largest() {
-    deepest_ = std::max({deepest_, columns_->status().max_depth, map_.extent().max_depth});
-    fastest_ = std::max({fastest_, columns_->status().max_speed, points_->status().max_speed});
+    deepest_ = std::max({deepest_, particles_->status().max_depth, map_.extent().max_depth});
+    fastest_ = std::max({fastest_, particles_->status().max_speed, points_->status().max_speed});
 }
 
-/// Sums of both models. All energy that the points lost counts as dissipated. What columns do not have, that of their
+/// Sums of both models. All energy that the points lost counts as dissipated. What particles do not have, that of their
 /// compression, is in the residual.
-void StagedRun::accumulate(const Status& columns) {
+void StagedRun::accumulate(const Status& particles) {
     const SolidStatus& s = points_->status();
     const Index step = status_.step;
     double mass = 0.0, energy = 0.0;  // on their way, in neither model
     Vec2 momentum(0, 0);
-    for (const Departed& column : pending_) {
-        mass += column.mass, energy += column.energy;
-        momentum += column.mass * Vec2(column.vx, column.vy);
+    for (const Departed& particle : pending_) {
+        mass += particle.mass, energy += particle.energy;
+        momentum += particle.mass * Vec2(particle.vx, particle.vy);
     }
     double mass_back = 0.0, energy_back = 0.0;  // the same the other way
     Vec2 momentum_back(0, 0);
@@ -272,7 +274,7 @@ void StagedRun::accumulate(const Status& columns) {
     Vec3 impulse = s.momentum_given + s.weight_impulse;
     for (const Vec3& of_surface : points_->body().impulse) impulse += of_surface;
     impulse += s.ghost_impulse;
-    status_ = columns;
+    status_ = particles;
     status_.step = step;
     if (!ended_) status_.time = s.time, status_.dt = s.dt;
     status_.particles += s.points + static_cast<Index>(pending_.size() + returning_.size());
@@ -287,29 +289,29 @@ void StagedRun::accumulate(const Status& columns) {
     status_.kinetic += s.kinetic;
     status_.potential += s.potential + energy + energy_back;
     status_.stored = s.stored;
-    const double lost = converted_.lost + returned_.lost;  // as columns became points, and points columns
+    const double lost = converted_.lost + returned_.lost;  // as particles became points, and points particles
     status_.in_3d = {s.friction, -s.contact_work, s.material, s.numerical() + lost, s.volume};
     status_.dissipated += s.energy_given - s.kinetic - s.potential - s.stored - s.energy_left + lost;
     status_.energy_left += s.energy_left - converted_.energy - energy_back - returned_.lost;
-    status_.max_depth = std::max({deepest_, columns.max_depth, map_.extent().max_depth});
-    status_.max_speed = std::max({fastest_, columns.max_speed, s.max_speed});
+    status_.max_depth = std::max({deepest_, particles.max_depth, map_.extent().max_depth});
+    status_.max_speed = std::max({fastest_, particles.max_speed, s.max_speed});
     deepest_ = fastest_ = 0.0;
-    status_.max_speed_on_map = std::max(columns.max_speed_on_map, s.max_speed);
-    status_.mean_speed = status_.mass > 0.0 ? (columns.mean_speed * columns.mass + s.speeds) / status_.mass : 0.0;
+    status_.max_speed_on_map = std::max(particles.max_speed_on_map, s.max_speed);
+    status_.mean_speed = status_.mass > 0.0 ? (particles.mean_speed * particles.mass + s.speeds) / status_.mass : 0.0;
     status_.covered_area += map_.extent().covered_area;
-    status_.front = std::max(columns.front, map_.extent().front);
+    status_.front = std::max(particles.front, map_.extent().front);
     if (start_.sound_speed > 0.0) largest_mach_ = std::max(largest_mach_, s.max_speed / start_.sound_speed);
     if (start_.stuck && s.mass > 0.0)
         finest_needed_ = std::min(
             finest_needed_, resolving_cell(scene_.solid->law, scene_.density, depth_of_points(), s.speeds / s.mass));
 }
 
-/// Columns and points on their way from one model to the other move.
+/// Particles and points on their way from one model to the other move.
 MovingMass StagedRun::motion(const MotionQuery& query) const {
-    MovingMass motion = columns_->motion(query);
+    MovingMass motion = particles_->motion(query);
     if (!points_) return motion;
     motion.mass = status_.mass, motion.fastest = status_.max_speed_on_map;
-    for (const Departed& column : pending_) motion.moving += column.mass;
+    for (const Departed& particle : pending_) motion.moving += particle.mass;
     for (const DepartedPoint& point : returning_) motion.moving += point.mass;
     for (Index p = 0; p < points_->body().points.count(); ++p)
         if (points_->velocity(p).norm() > query.faster_than)
@@ -318,9 +320,9 @@ MovingMass StagedRun::motion(const MotionQuery& query) const {
     return motion;
 }
 
-/// What rests as columns may flow as points, and the other way round.
+/// What rests as particles may flow as points, and the other way round.
 bool StagedRun::may_rest() const {
-    return points_ && (!scene_.solid->until || (ended_ && columns_->status().dt > 0.0));
+    return points_ && (!scene_.solid->until || (ended_ && particles_->status().dt > 0.0));
 }
 
 /// Whether it is points that stand on a node.
@@ -330,16 +332,16 @@ bool StagedRun::stands_in_window(Index i, Index j) const {
 }
 
 /// What depth at a node stands on [m]. In the window of points it is their ground, or the top of a barrier that leaves no
-/// room beside it. Columns have barriers as ground, with a ramp before each: the ground elsewhere.
+/// room beside it. Particles have barriers as ground, with a ramp before each: the ground elsewhere.
 double StagedRun::ground_at(Index i, Index j) const {
-    const double of_columns = columns_->flow().bed.z[columns_->flow().grid.at(i, j)];
-    if (!stands_in_window(i, j)) return of_columns;
+    const double of_particles = particles_->flow().bed.z[particles_->flow().grid.at(i, j)];
+    if (!stands_in_window(i, j)) return of_particles;
     const double top = map_.top_below(map_.number(i, j)), bed = scene_.bed.at(i, j);
-    return std::isfinite(top) ? top : std::isfinite(bed) ? bed : of_columns;
+    return std::isfinite(top) ? top : std::isfinite(bed) ? bed : of_particles;
 }
 
 Sample StagedRun::at(const Vec2& point) const {
-    Sample sample = columns_->at(point);
+    Sample sample = particles_->at(point);
     if (!points_) return sample;
     const Sample more = map_.at(point);
     const double depth = sample.depth + more.depth;
@@ -370,7 +372,7 @@ void StagedRun::remark_law(std::vector<std::string>& remarks) const {
     if (scene_.bed_laws())
         remarks.push_back(fmt::format(
             "3D points have a friction of {:.3g} at the bed, by stage.bed_friction, wherever they are; friction "
-            "that varies from place to place is that of columns alone",
+            "that varies from place to place is that of particles alone",
             stage.bed_friction));
     if (hangs_on_speed(scene_.bed_law))
         remarks.push_back(fmt::format(
@@ -459,10 +461,10 @@ void StagedRun::remark_walls(std::vector<std::string>& remarks) const {
 }
 
 std::vector<std::string> StagedRun::remarks() const {
-    std::vector<std::string> remarks = columns_->remarks();
+    std::vector<std::string> remarks = particles_->remarks();
     for (std::string& remark : remarks_on(footings_)) remarks.push_back(std::move(remark));
-    if (columns_watch_)
-        for (std::string& remark : columns_watch_->remarks()) remarks.push_back(std::move(remark));
+    if (particles_watch_)
+        for (std::string& remark : particles_watch_->remarks()) remarks.push_back(std::move(remark));
     if (!points_) return remarks;
     remark_walls(remarks);
     if (watch_)
@@ -471,8 +473,8 @@ std::vector<std::string> StagedRun::remarks() const {
     constexpr double kRoundOff = 1e-12;
     const double density = scene_.density, rest = s.mass / density, gone = s.mass_left - returned_.mass;
     remarks.push_back(fmt::format(
-        "3D points from {:.6g} s on: {:.6g} m3 of columns became points then, {:.6g} m3 came in over the "
-        "window's edges later, {:.6g} m3 became columns again, {:.6g} m3 left through its sides; {} points "
+        "3D points from {:.6g} s on: {:.6g} m3 of particles became points then, {:.6g} m3 came in over the "
+        "window's edges later, {:.6g} m3 became particles again, {:.6g} m3 left through its sides; {} points "
         "now; top of the space {:.6g} m",
         scene_.solid->from, (converted_.mass - converted_.mass_later) / density, converted_.mass_later / density,
         returned_.mass / density, gone > kRoundOff * s.mass_left ? gone / density : 0.0, s.points, start_.top));
@@ -498,7 +500,8 @@ std::vector<std::string> StagedRun::remarks() const {
     }
     if (returned_.raised > 0.0)
         remarks.push_back(fmt::format(
-            "{:.6g} m3 became columns on ground that barriers or walls in holes raise, and gained height: columns have "
+            "{:.6g} m3 became particles on ground that barriers or walls in holes raise, and gained height: particles "
+            "have "
             "no "
             "cell before it within three cells; leave as much between barriers, and between stage.window and holes",
             returned_.raised / density));
@@ -508,7 +511,7 @@ std::vector<std::string> StagedRun::remarks() const {
 }
 
 std::vector<PhaseTime> StagedRun::timings() const {
-    std::vector<PhaseTime> all = columns_->timings();
+    std::vector<PhaseTime> all = particles_->timings();
     if (points_)
         for (PhaseTime phase : points_->timings()) {
             phase.name = "points: " + phase.name;
@@ -532,12 +535,12 @@ void StagedRun::serialize(Archive& archive) {
         points_ = std::make_unique<Mpm3d>(space_of_stage());
         points_->note_departed();
         if (!scene_.barriers.empty()) watch_.emplace(scene_, *points_, start_.blur);
-        if (!ended_) columns_->open_exits(nodes_in_window(scene_), false);
+        if (!ended_) particles_->open_exits(nodes_in_window(scene_), false);
         at_edge_ = nodes_at_edge(scene_);
     }
     {
         const Archive::Part part(archive, "columns");
-        columns_->serialize(archive);
+        particles_->serialize(archive);
     }
     frana::serialize(archive, "status", status_);
     archive.numbers(
@@ -549,9 +552,9 @@ void StagedRun::serialize(Archive& archive) {
     spray_.serialize(archive);
     timed_.serialize(archive);
     serialize_returning(archive);
-    if (columns_watch_) {
+    if (particles_watch_) {
         const Archive::Part part(archive, "columns_watch");
-        columns_watch_->serialize(archive);
+        particles_watch_->serialize(archive);
     }
     if (!points_) return;
     map_.serialize(archive);
@@ -562,7 +565,7 @@ void StagedRun::serialize(Archive& archive) {
         points_->serialize(archive);
     }
     if (archive.loading() && !ended_) {
-        if (columns_->status().time > points_->status().time) show_columns();
+        if (particles_->status().time > points_->status().time) show_particles();
         for (const DepartedPoint& point : returning_) points_->set_adjacent(point);
     }
     if (watch_ && archive.loading()) watch_->accumulate_loads(*points_);
@@ -579,13 +582,13 @@ void StagedRun::serialize_returning(Archive& archive) {
     }
     archive.array("pending_id", ids);
     archive.array("pending", numbers);
-    constexpr std::size_t kOfColumn = 15, kOfPoint = 19;
-    if (numbers.size() != kOfColumn * ids.size())
-        Archive::wrong_length("pending", numbers.size(), kOfColumn * ids.size());
+    constexpr std::size_t kOfParticle = 15, kOfPoint = 19;
+    if (numbers.size() != kOfParticle * ids.size())
+        Archive::wrong_length("pending", numbers.size(), kOfParticle * ids.size());
     if (archive.loading()) {
         pending_.clear();
         for (std::size_t n = 0; n < ids.size(); ++n) {
-            const double* const c = &numbers[kOfColumn * n];
+            const double* const c = &numbers[kOfParticle * n];
             pending_.push_back({ids[n],
                                 c[0],
                                 c[1],

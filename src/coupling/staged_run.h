@@ -1,7 +1,7 @@
 #pragma once
-// A run in stages (Fois, de Falco, Formaggia 2025): columns, from a time on 3D points in a map window. The
-// tail that still flows into the window is converted column by column, and what flows out becomes columns. Where the
-// case says so, all are columns again later.
+// A run in stages (Fois, de Falco, Formaggia 2025): particles, from a time on 3D points in a map window. The
+// tail that still flows into the window is converted particle by particle, and what flows out becomes particles. Where
+// the case says so, all are particles again later.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,21 +27,21 @@ public:
 
     void advance(double until) override;
     const Status& status() const override { return status_; }
-    /// Known before the points' stage only: later steps end where columns and points meet, and at output times.
+    /// Known before the points' stage only: later steps end where particles and points meet, and at output times.
     double longest_step() const override {
         // A step aside must not begin the stage: a rounding error less than what is left.
         return points_ ? 0.0
-                       : std::min(columns_->longest_step(), std::nextafter(scene_.solid->from - status_.time, 0.0));
+                       : std::min(particles_->longest_step(), std::nextafter(scene_.solid->from - status_.time, 0.0));
     }
     MovingMass motion(const MotionQuery& query) const override;
     bool may_rest() const override;
-    /// With 3D points: columns first, then points; "model" is 0 and 1. A point's depth, elevation and surface are
-    /// those of the map at its place. Between outputs columns and map may be ahead or behind by a step of the
-    /// columns.
+    /// With 3D points: particles first, then points; "model" is 0 and 1. A point's depth, elevation and surface are
+    /// those of the map at its place. Between outputs particles and map may be ahead or behind by a step of the
+    /// particles.
     Frame frame() override;
     std::shared_ptr<const void> give_frame_away() override {
         return std::make_shared<const std::array<std::shared_ptr<const void>, 2>>(
-            std::array<std::shared_ptr<const void>, 2>{columns_->give_frame_away(), store_.give_away()});
+            std::array<std::shared_ptr<const void>, 2>{particles_->give_frame_away(), store_.give_away()});
     }
     Sample at(const Vec2& point) const override;
     const BarrierLoads* loads() const override { return watch_ ? &watch_->loads() : nullptr; }
@@ -52,10 +52,10 @@ public:
 
     /// The 3D points; nullptr before their stage.
     const Mpm3d* points() const { return points_.get(); }
-    const DepthAveraged& columns() const { return *columns_; }
+    const DepthAveraged& particles() const { return *particles_; }
 
 private:
-    /// What the columns gave away, as they recorded it.
+    /// What the particles gave away, as they recorded it.
     struct Converted {
         double mass = 0.0, energy = 0.0, mass_later = 0.0;
         /// That points did not get: motion of what is set on barriers, or without `along_bed` up and down [J].
@@ -63,30 +63,30 @@ private:
         std::array<double, 2> momentum{};
     };
 
-    /// What points gave back: what columns took of it, and the energy that they have no place for. Also what stands on
-    /// ground that a barrier or a hole's wall raises, for want of a cell before it.
+    /// What points gave back: what particles took of it, and the energy that they have no place for. Also what stands
+    /// on ground that a barrier or a hole's wall raises, for want of a cell before it.
     struct Returned {
         double mass = 0.0, lost = 0.0, raised = 0.0;
     };
 
     using Marks = std::vector<std::uint8_t>;  ///< of nodes, 1 or 0
-    void begin_3d(const std::function<FlowColumns(const Marks&)>& columns_at);
+    void begin_3d(const std::function<FlowParticles(const Marks&)>& particles_at);
     SolidScene space_of_stage() const;
     void begin_watch();
-    void step_columns(double until);
+    void step_particles(double until);
     void step_points(double until);
     void convert_to_3d();
     void note_departed();
     using PlaceOf =
-        std::function<Vec2(const DepartedPoint&, const Vec2&)>;  ///< of a column of a point that has come there
+        std::function<Vec2(const DepartedPoint&, const Vec2&)>;  ///< of a particle of a point that has come there
     using Allowed = std::function<bool(Index, Index)>;           ///< of cells of nodes
     void convert_to_2d(const PlaceOf& place);
     void clear_ramps();
     void end_3d();
-    void watch_columns(double before, double until);
-    void sample_columns();
-    void step_columns_alone(double until);
-    Vec2 place_of_column(const DepartedPoint& point, const Vec2& to);
+    void watch_particles(double before, double until);
+    void sample_particles();
+    void step_particles_alone(double until);
+    Vec2 place_of_particle(const DepartedPoint& point, const Vec2& to);
     Vec2 where_allowed(const DepartedPoint& point, const Vec2& to) const;
     bool may_stand(const DepartedPoint& point, const Vec2& x, const Allowed& allowed) const;
     Vec2 in_cell(Index i, Index j, const Vec2& x) const;
@@ -99,12 +99,12 @@ private:
     bool above_barrier(const Vec2& place) const;
     bool behind_barrier(const Vec3& from, const Vec2& place) const;
     void show_points();
-    void show_columns();
-    FlowColumns columns_at_edge(std::vector<Mat2>& gradients) const;
-    GhostParticles ghosts_of(const FlowColumns& columns, const std::vector<Mat2>& gradients) const;
-    SolidSeeds seeds_of_window(const FlowColumns& columns, const std::vector<Surface>& surfaces);
-    void require_room(const FlowColumns& columns) const;
-    void require_below_top(const FlowColumns& columns) const;
+    void show_particles();
+    FlowParticles particles_at_edge(std::vector<Mat2>& gradients) const;
+    GhostParticles ghosts_of(const FlowParticles& particles, const std::vector<Mat2>& gradients) const;
+    SolidSeeds seeds_of_window(const FlowParticles& particles, const std::vector<Surface>& surfaces);
+    void require_room(const FlowParticles& particles) const;
+    void require_below_top(const FlowParticles& particles) const;
     void sample(double until);
     void find_pieces();
     void remark_walls(std::vector<std::string>& remarks) const;
@@ -112,10 +112,10 @@ private:
     void remark_cells(std::vector<std::string>& remarks) const;
     void remark_cells_at_barriers(std::vector<std::string>& remarks) const;
     double deepest_at(const Surface& barrier) const;
-    /// Of columns as they became points, mean by mass [m].
+    /// Of particles as they became points, mean by mass [m].
     double depth_of_points() const { return became_points_ > 0.0 ? their_depth_ / became_points_ : 0.0; }
     void remark_pieces(std::vector<std::string>& remarks) const;
-    void accumulate(const Status& columns);
+    void accumulate(const Status& particles);
     void note_largest();
     void serialize_returning(Archive& archive);
     void particle_fields(Frame& frame);
@@ -125,18 +125,19 @@ private:
 
     Scene scene_;
     Footings footings_;  ///< what barriers stand on
-    std::unique_ptr<DepthAveraged> columns_;
+    std::unique_ptr<DepthAveraged> particles_;
     std::unique_ptr<Mpm3d> points_;
     SolidStart start_;
     FlowMap map_;
-    std::optional<BarrierWatch> watch_;         ///< when there are barriers, from the stage on
-    std::optional<ColumnWatch> columns_watch_;  ///< when there are, of columns before, around and after it
-    std::vector<Departed> pending_;             ///< columns that left into the window, ahead of the points' time
+    std::optional<BarrierWatch> watch_;             ///< when there are barriers, from the stage on
+    std::optional<ParticleWatch> particles_watch_;  ///< when there are, of particles before, around and after it
+    std::vector<Departed> pending_;                 ///< particles that left into the window, ahead of the points' time
     std::vector<std::uint8_t>
-        at_edge_;  ///< nodes in the window, and around its open sides as far as points feel columns
-    std::vector<std::uint8_t> raised_;      ///< with barriers: 1 at nodes whose ground they raise for columns
-    std::vector<double> points_depth_;      ///< scratch of show_points, on the terrain's nodes [m]
-    std::vector<DepartedPoint> returning_;  ///< points that left where columns may stand, since the columns' last step
+        at_edge_;  ///< nodes in the window, and around its open sides as far as points feel particles
+    std::vector<std::uint8_t> raised_;  ///< with barriers: 1 at nodes whose ground they raise for particles
+    std::vector<double> points_depth_;  ///< scratch of show_points, on the terrain's nodes [m]
+    std::vector<DepartedPoint>
+        returning_;  ///< points that left where particles may stand, since the particles' last step
     Converted converted_;
     Returned returned_;
     bool ended_ = false;  ///< the 3D stage is over: its points, none, only have its sums
@@ -149,7 +150,7 @@ private:
     Spray spray_;
     double largest_mach_ = 0.0;  ///< fastest point over the speed of sound [1]
     double became_points_ = 0.0,
-           their_depth_ = 0.0;  ///< mass of columns that did, and the sum of mass times depth [kg, kg m]
+           their_depth_ = 0.0;  ///< mass of particles that did, and the sum of mass times depth [kg, kg m]
     double finest_needed_ =
         std::numeric_limits<double>::infinity();  ///< least resolving_cell() of the points so far [m]
     FrameStore store_;

@@ -1,4 +1,4 @@
-// What a run of structured columns shows: fields of the columns, and of the nodes.
+// What a run of structured particles shows: fields of the particles, and of the nodes.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,7 +11,7 @@
 namespace frana {
 namespace {
 
-/// What a column's nodes say of something, by its shape functions.
+/// What a particle's nodes say of something, by its shape functions.
 template <class At>
 double from_nodes(const StructuredBody& body, Index p, At&& at) {
     const Quadratic sx(body.points.x[p]), sy(body.points.y[p]);
@@ -61,12 +61,12 @@ void StructuredRun::particle_fields(Frame& frame) {
     const StructuredBody& body = flow().body();
     const StructuredPoints& q = body.points;
     const Index count = q.count();
-    const auto column = [&](const char* name, const char* unit, int components) {
+    const auto array = [&](const char* name, const char* unit, int components) {
         return store_.zeros(frame.particles, name, unit, components, count);
     };
     ParticleFields fields(store_, frame.particles, count);
-    double *stress = column("stress", "Pa", 3), *effective = column("effective_stress", "Pa", 3),
-           *damage = column("damage", "1", 1), *cohesion = column("cohesion", "Pa", 1);
+    double *stress = array("stress", "Pa", 3), *effective = array("effective_stress", "Pa", 3),
+           *damage = array("damage", "1", 1), *cohesion = array("cohesion", "Pa", 1);
 #pragma omp parallel for schedule(static)
     for (Index p = 0; p < count; ++p) {
         const Vec2 x = flow().position(p);
@@ -121,7 +121,7 @@ void StructuredRun::node_fields(Frame& frame) {
     });
 }
 
-/// Stresses, damage and cohesion on the nodes: means over the mass of what the columns show.
+/// Stresses, damage and cohesion on the nodes: means over the mass of what the particles show.
 void StructuredRun::inner_fields(Frame& frame) {
     const StructuredBody& body = flow().body();
     const StructuredPoints& q = body.points;
@@ -147,11 +147,11 @@ void StructuredRun::inner_fields(Frame& frame) {
         }
     });
     const GridGeometry& g = bed_.geometry;
-    const auto column = [&](const char* name, const char* unit, int components) {
+    const auto array = [&](const char* name, const char* unit, int components) {
         return store_.zeros(frame.nodes, name, unit, components, g.size());
     };
-    double *stress_to = column("stress", "Pa", 3), *effective_to = column("effective_stress", "Pa", 3),
-           *damage_to = column("damage", "1", 1), *cohesion_to = column("cohesion", "Pa", 1);
+    double *stress_to = array("stress", "Pa", 3), *effective_to = array("effective_stress", "Pa", 3),
+           *damage_to = array("damage", "1", 1), *cohesion_to = array("cohesion", "Pa", 1);
     for_each_node(body.grid, body.active.work, [&](Index k, Index n) {
         const Inner& node = inner_[k];
         if (!(node.mass > 0.0)) return;
@@ -192,10 +192,10 @@ void StructuredRun::water_fields(Frame& frame) {
         if (!(h > 0.0) || !std::isfinite(elevation[n])) return;
         const Vec2 slope = slope_under(water, k), v = velocity_of(water, k);
         const double own[3] = {v.x(), v.y(), map_.climb(k, v.x(), v.y())}, all = depth[n] + h,
-                     columns = StructuredMap::density_of(flow().body(), k) * depth[n],
-                     both = columns + water_density_ * h;
+                     particles = StructuredMap::density_of(flow().body(), k) * depth[n],
+                     both = particles + water_density_ * h;
         for (int c = 0; c < 3; ++c)
-            velocity[3 * n + c] = (columns * velocity[3 * n + c] + water_density_ * h * own[c]) / both;
+            velocity[3 * n + c] = (particles * velocity[3 * n + c] + water_density_ * h * own[c]) / both;
         speed[n] = Vec3(velocity[3 * n], velocity[3 * n + 1], velocity[3 * n + 2]).norm();
         depth[n] = all, surface[n] += h;
         thickness[n] = all / std::sqrt(1.0 + slope.x() * slope.x() + slope.y() * slope.y());
@@ -203,7 +203,7 @@ void StructuredRun::water_fields(Frame& frame) {
     });
 }
 
-/// The water's own, where columns are with it.
+/// The water's own, where particles are with it.
 void StructuredRun::own_water_fields(Frame& frame) {
     const WaterBody& water = both_->water().body();
     const Index size = bed_.geometry.size();

@@ -48,11 +48,11 @@ StructuredScene started(const Scene& scene, Start start) {
 
 TwoPhaseScene wet(const Scene& scene, Start start) {
     TwoPhaseScene s = two_phase_scene(scene);
-    if (start == Start::resumed) s.columns.points = {}, s.water.start = {};
+    if (start == Start::resumed) s.structured.points = {}, s.water.start = {};
     return s;
 }
 
-/// Distance at which columns of the start are neighbours: 1.1 times as far as they stand apart [m].
+/// Distance at which particles of the start are neighbours: 1.1 times as far as they stand apart [m].
 double reach_of_neighbours(const Seeds& seeds) {
     double widest = 0.0;
     for (const double size : seeds.size) widest = std::max(widest, size);
@@ -127,7 +127,7 @@ void StructuredRun::accumulate_water() {
     const WaterLedger& l = w.ledger;
     const double density = water_density_, solids = status_.mass, mass = solids + density * w.volume;
     const Vec2 left = l.momentum_left + l.momentum_infiltrated,
-               thrust = w.momentum_given + l.ground + l.walls + l.friction + l.columns;
+               thrust = w.momentum_given + l.ground + l.walls + l.friction + l.particles;
     if (both_->alone()) status_.step = w.step, status_.time = w.time;
     status_.dt = w.dt;
     status_.mass = mass;
@@ -160,8 +160,8 @@ bool StructuredRun::more_comes() const {
     return both_ && (both_->water().sources_go_on() || both_->water().comes_on());
 }
 
-std::string StructuredRun::why_not_add(const Seeds& columns) const {
-    if (solids_) return Simulation::why_not_add(columns);
+std::string StructuredRun::why_not_add(const Seeds& particles) const {
+    if (solids_) return Simulation::why_not_add(particles);
     return "found a case of free water; expected one of depth-averaged flow alone; give what comes later as an inflow "
            "of the "
            "case";
@@ -243,7 +243,7 @@ std::vector<std::string> StructuredRun::remarks() const {
     const Breakage now = breakage();
     const StructuredStatus& s = flow().status();
     std::vector<std::string> remarks;
-    if (s.lost_in_holes > 0.0)  // walls in holes, the depth-averaged flow's way out, structured columns do not have
+    if (s.lost_in_holes > 0.0)  // walls in holes, the depth-averaged flow's way out, structured particles do not have
         remarks.push_back(fmt::format(
             "boundary.holes: {:.6g} kg, {:.3g} % of the mass, left where the elevation model has no data inside the "
             "terrain; fill it (gdal_fillnodata.py)",
@@ -255,10 +255,10 @@ std::vector<std::string> StructuredRun::remarks() const {
                         flow().status().outrun));
     remark_on_low_barriers(remarks);
     if (now.numerical == 0) return remarks;
-    remarks.push_back(
-        fmt::format("structure: {} of {} pairs of neighbouring columns parted without damage to either, by the scheme "
-                    "and not by the material (numerical fracture); a smaller critical_strain or finer cells may help",
-                    now.numerical, now.pairs));
+    remarks.push_back(fmt::format(
+        "structure: {} of {} pairs of neighbouring particles parted without damage to either, by the scheme "
+        "and not by the material (numerical fracture); a smaller critical_strain or finer cells may help",
+        now.numerical, now.pairs));
     return remarks;
 }
 

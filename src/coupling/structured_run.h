@@ -13,7 +13,7 @@
 
 namespace frana {
 
-/// The scene of the columns. The bed's slope is by central differences of its nodes, as far as there is ground. Walls
+/// The scene of the particles. The bed's slope is by central differences of its nodes, as far as there is ground. Walls
 /// and barriers are obstacles.
 StructuredScene structured_scene(const Scene& scene);
 /// The same with its water, or the water alone. Holds on to `scene` until a flow is made of it.
@@ -39,7 +39,7 @@ public:
     Sample at(const Vec2& point) const override;
     bool may_rest() const override;
     bool more_comes() const override;
-    std::string why_not_add(const Seeds& columns) const override;
+    std::string why_not_add(const Seeds& particles) const override;
     std::vector<std::string> remarks() const override;
     Extras extras() const override;
     Breakage breakage() const;
@@ -50,7 +50,7 @@ public:
     std::vector<PhaseTime> timings() const override;
     void serialize(Archive& archive) override;
 
-    const StructuredFlow& flow() const { return both_ ? both_->columns() : *alone_; }
+    const StructuredFlow& flow() const { return both_ ? both_->structured() : *alone_; }
     /// nullptr in a dry run.
     const WaterFlow* water() const { return both_ ? &both_->water() : nullptr; }
 
@@ -78,7 +78,7 @@ private:
     Neighbours neighbours_;  ///< of the start
     StepClock timed_;
     Status status_;
-    /// Per node, sums of what columns show times their mass, and of mass.
+    /// Per node, sums of what particles show times their mass, and of mass.
     struct Inner {
         double stress[3], effective[3], damage, cohesion, mass;
     };

@@ -1,4 +1,4 @@
-// The scene of structured columns that a case describes.
+// The scene of structured particles that a case describes.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,7 +15,7 @@
 namespace frana {
 namespace {
 
-/// The bed as columns feel it. Beyond the outer nodes it goes on as it is there.
+/// The bed as particles feel it. Beyond the outer nodes it goes on as it is there.
 class Terrain {
 public:
     Terrain(const Scene& scene)
@@ -51,8 +51,8 @@ private:
         return std::binary_search(holes_.begin(), holes_.end(), j * bed_.geometry.nx + i);
     }
 
-    /// Mean elevation of the nearest ring of nodes with ground, where there is none, as far as columns reach [m].
-    /// Nodes there carry a share of the columns at the hole, and that share has its height.
+    /// Mean elevation of the nearest ring of nodes with ground, where there is none, as far as particles reach [m].
+    /// Nodes there carry a share of the particles at the hole, and that share has its height.
     double ground_near_hole(Index i, Index j) const {
         constexpr Index kReach = 4;
         for (Index reach = 1; reach <= kReach; ++reach) {
@@ -116,7 +116,7 @@ std::function<BedGeometry(const TileGrid&)> bed_under(const Scene& scene) {
     };
 }
 
-/// At the nodes of a scene of columns.
+/// At the nodes of a scene of particles.
 std::function<BedCurvature(double x, double y)> curvature_of(const StructuredScene& scene) {
     const auto grid = std::make_shared<const TileGrid>(scene.grid);
     const auto bed = std::make_shared<const BedGeometry>(scene.bed(*grid));
@@ -131,7 +131,7 @@ std::function<BedCurvature(double x, double y)> curvature_of(const StructuredSce
 
 namespace {
 
-/// Of water alone: columns that are never there, and so pass no sound on.
+/// Of water alone: particles that are never there, and so pass no sound on.
 Structure no_structure() {
     Structure none;
     none.share = 0.0, none.hydrostatic = true;
@@ -171,7 +171,7 @@ StructuredScene structured_scene(const Scene& scene) {
 
 namespace {
 
-/// Depth and discharge of the water of the releases. It is in the pores of columns, spread as they are, or all of it.
+/// Depth and discharge of the water of the releases. It is in the pores of particles, spread as they are, or all of it.
 class ReleasedWater {
 public:
     ReleasedWater(const Scene& scene) : g_(scene.bed.geometry), depth_(size()), qx_(size()), qy_(size()) {
@@ -240,11 +240,11 @@ private:
     std::vector<double> depth_, qx_, qy_;
 };
 
-/// Depth of the columns on the nodes of the terrain [m].
-std::vector<double> depths_of(const StructuredScene& columns) {
-    const StructuredFlow flow(columns);
+/// Depth of the particles on the nodes of the terrain [m].
+std::vector<double> depths_of(const StructuredScene& particles) {
+    const StructuredFlow flow(particles);
     const StructuredBody& body = flow.body();
-    const GridGeometry& g = columns.grid;
+    const GridGeometry& g = particles.grid;
     // As with water: of the mass on the node (two_phase_flow.cpp, confine), not of the grains' sub-points.
     const double per_mass = 1.0 / (body.density * g.cell * g.cell);
     std::vector<double> depths(static_cast<std::size_t>(g.size()), 0.0);
@@ -282,7 +282,7 @@ void set_edges(const Scene& scene, WaterScene& w) {
 TwoPhaseScene two_phase_scene(const Scene& scene) {
     const WaterPhase& of = *scene.water;
     TwoPhaseScene s;
-    s.columns = structured_scene(scene);
+    s.structured = structured_scene(scene);
     s.alone = !scene.structure;
     s.exchange = of.exchange;
     WaterScene& w = s.water;
@@ -297,7 +297,8 @@ TwoPhaseScene two_phase_scene(const Scene& scene) {
         const double z = scene.bed.values[node(x, y)];
         return std::isfinite(z) ? z : highest;
     };
-    const auto bound = std::make_shared<std::vector<double>>(of.level ? depths_of(s.columns) : std::vector<double>{});
+    const auto bound =
+        std::make_shared<std::vector<double>>(of.level ? depths_of(s.structured) : std::vector<double>{});
     const auto released = std::make_shared<ReleasedWater>(scene);
     w.start = [bound, released, node, bed = w.bed, level = of.level, lake = of.lake](double x, double y) {
         const std::size_t k = node(x, y);
@@ -313,7 +314,7 @@ TwoPhaseScene two_phase_scene(const Scene& scene) {
     };
     w.rain = on_nodes(of.rain), w.infiltration = on_nodes(of.infiltration);
     set_edges(scene, w);
-    if (s.columns.curved) w.curvature = curvature_of(s.columns);
+    if (s.structured.curved) w.curvature = curvature_of(s.structured);
     w.friction = of.friction, w.viscosity = of.viscosity;
     if (const WaterLawMap* of_nodes = scene.water_laws())
         w.friction_at = [of_nodes, node](double x, double y) {

@@ -9,8 +9,8 @@
 namespace frana {
 namespace {
 
-double confined_volume(const StructuredFlow& columns) {
-    const StructuredPoints& q = columns.body().points;
+double confined_volume(const StructuredFlow& particles) {
+    const StructuredPoints& q = particles.body().points;
     double sum = 0.0;
     for (Index p = 0; p < q.count(); ++p) sum += q.confined[p] + q.released[p];
     return sum;
@@ -19,21 +19,21 @@ double confined_volume(const StructuredFlow& columns) {
 }  // namespace
 
 TwoPhaseFlow::TwoPhaseFlow(const TwoPhaseScene& scene)
-    : columns_(scene.columns), water_(scene.water), alone_(scene.alone) {
-    expect(scene.columns.grid == scene.water.grid, "columns and water share a grid");
-    expect(!alone_ || scene.columns.points.x.empty(), "water alone has no columns beside it");
+    : structured_(scene.structured), water_(scene.water), alone_(scene.alone) {
+    expect(scene.structured.grid == scene.water.grid, "particles and water share a grid");
+    expect(!alone_ || scene.structured.points.x.empty(), "water alone has no particles beside it");
     FreeWater water{
         scene.exchange, TwoPhaseDrag(scene.exchange.material), nullptr, nullptr, nullptr, nullptr, 0.0, {}, {}, {}};
     water_.lend(water);
-    columns_.meet(water);
+    structured_.meet(water);
     confine();
     update_totals();
-    volume_given_ = confined_volume(columns_) + water_.status().volume;
+    volume_given_ = confined_volume(structured_) + water_.status().volume;
 }
 
 /// The water lies on what is bound, as it stands now.
 void TwoPhaseFlow::confine() {
-    const StructuredBody& body = columns_.body();
+    const StructuredBody& body = structured_.body();
     const Index nx = body.grid.nx(), ny = body.grid.ny();
     const auto set = [&](const std::vector<Index>& tiles, auto&& depth) {
         for (const Index tile : tiles) {
@@ -51,7 +51,7 @@ void TwoPhaseFlow::confine() {
 
 /// The same of the share of what is bound, and its velocity.
 void TwoPhaseFlow::mix() {
-    const StructuredBody& body = columns_.body();
+    const StructuredBody& body = structured_.body();
     const auto each = [&](const std::vector<Index>& tiles, auto&& set) {
         for (const Index tile : tiles) {
             const Index i0 = body.grid.tile_i(tile), j0 = body.grid.tile_j(tile);
@@ -67,34 +67,34 @@ void TwoPhaseFlow::mix() {
     });
 }
 
-/// Columns that outrun the water's waves, or that there is no water with yet, bound its step as well. 0: they do not.
-double TwoPhaseFlow::step_of_columns() const {
+/// Particles that outrun the water's waves, or that there is no water with yet, bound its step as well. 0: they do not.
+double TwoPhaseFlow::step_of_particles() const {
     constexpr double kPart = 0.45;
-    const double reach = kPart * columns_.body().grid.cell(), wave = columns_.wave();
+    const double reach = kPart * structured_.body().grid.cell(), wave = structured_.wave();
     return wave > 0.0 ? reach / wave : 0.0;
 }
 
 double TwoPhaseFlow::longest_step() const {
-    const double water = water_.longest_step(), columns = step_of_columns();
-    return water > 0.0 && columns > 0.0 ? std::min(water, columns) : std::max(water, columns);
+    const double water = water_.longest_step(), particles = step_of_particles();
+    return water > 0.0 && particles > 0.0 ? std::min(water, particles) : std::max(water, particles);
 }
 
 void TwoPhaseFlow::advance(double until) {
-    const double longest = step_of_columns();
+    const double longest = step_of_particles();
     water_.advance(longest > 0.0 ? std::min(until, time() + longest) : until);
-    if (!alone_) move_columns();
+    if (!alone_) move_particles();
     update_totals();
 }
 
 /// To the water's time.
-void TwoPhaseFlow::move_columns() {
+void TwoPhaseFlow::move_particles() {
     const double end = water_.status().time;
-    reached_tiles_ = columns_.body().active.work;
-    while (columns_.status().time < end) {
-        columns_.advance(end);
-        touch(columns_.body().active.work);
+    reached_tiles_ = structured_.body().active.work;
+    while (structured_.status().time < end) {
+        structured_.advance(end);
+        touch(structured_.body().active.work);
     }
-    columns_.sample();
+    structured_.sample();
     water_.take_changes(reached_tiles_);
     confine();
 }
@@ -132,7 +132,7 @@ void TwoPhaseFlow::update_totals() {
 void TwoPhaseFlow::serialize(Archive& archive) {
     {
         const Archive::Part part(archive, "columns");
-        columns_.serialize(archive);
+        structured_.serialize(archive);
     }
     {
         const Archive::Part part(archive, "water");
@@ -140,20 +140,20 @@ void TwoPhaseFlow::serialize(Archive& archive) {
     }
     archive.numbers("weights", {&volume_given_, &potential_, &kinetic_});
     if (!archive.loading()) return;
-    columns_.sample();  // with the water that has been loaded
+    structured_.sample();  // with the water that has been loaded
     confine();
 }
 
 double TwoPhaseFlow::sub_cycles() const {
     const Index steps = water_.status().step;
-    return steps > 0 ? static_cast<double>(columns_.status().step) / static_cast<double>(steps) : 0.0;
+    return steps > 0 ? static_cast<double>(structured_.status().step) / static_cast<double>(steps) : 0.0;
 }
 
-double TwoPhaseFlow::confined() const { return confined_volume(columns_); }
+double TwoPhaseFlow::confined() const { return confined_volume(structured_); }
 
 double TwoPhaseFlow::volume_residual() const {
     const WaterLedger& l = water_.status().ledger;
-    return confined_volume(columns_) + columns_.status().confined_left + water_.status().volume + l.left +
+    return confined_volume(structured_) + structured_.status().confined_left + water_.status().volume + l.left +
            l.infiltrated - l.rained - l.entered - l.fed - volume_given_;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Structured columns and free water on one grid: a mass of rock and water as it breaks and drains. Or the water
+// Structured particles and free water on one grid: a mass of rock and water as it breaks and drains. Or the water
 // alone.
 #include "structured/structured_flow.h"
 #include "water/water_flow.h"
@@ -7,35 +7,35 @@
 namespace frana {
 
 struct TwoPhaseScene {
-    StructuredScene columns;
-    WaterScene water;  ///< on the same grid; its depth at the start is free water, above the columns where both are
+    StructuredScene structured;
+    WaterScene water;  ///< on the same grid; its depth at the start is free water, above the particles where both are
     WaterExchange exchange;
-    bool alone = false;  ///< there are no columns, nor will be
+    bool alone = false;  ///< there are no particles, nor will be
 };
 
-/// Steps of the water, each followed by as many of the columns as elastic waves need. In those the water stands still
-/// but for what it exchanges with the columns at their nodes. That is momentum, exactly, and what they release.
+/// Steps of the water, each followed by as many of the particles as elastic waves need. In those the water stands still
+/// but for what it exchanges with the particles at their nodes. That is momentum, exactly, and what they release.
 class TwoPhaseFlow {
 public:
     explicit TwoPhaseFlow(const TwoPhaseScene& scene);
 
-    /// One step of the water and those of the columns, never past `until` [s].
+    /// One step of the water and those of the particles, never past `until` [s].
     void advance(double until);
     /// Length at most of the next step; 0 where nothing bounds it [s].
     double longest_step() const;
-    const StructuredFlow& columns() const { return columns_; }
-    /// The columns' timings() tell CPU time too from now on.
-    void count_cpu_time() { columns_.count_cpu_time(); }
+    const StructuredFlow& structured() const { return structured_; }
+    /// The particles' timings() tell CPU time too from now on.
+    void count_cpu_time() { structured_.count_cpu_time(); }
     const WaterFlow& water() const { return water_; }
     double time() const { return water_.status().time; }
-    /// Whether there is the water only: the columns then take no steps.
+    /// Whether there is the water only: the particles then take no steps.
     bool alone() const { return alone_; }
-    /// Steps of the columns for each of the water, so far.
+    /// Steps of the particles for each of the water, so far.
     double sub_cycles() const;
     /// Water now, confined and free, and lost, less what was given [m^3]: round-off
     double volume_residual() const;
     double volume_given() const { return volume_given_; }
-    /// In columns, now [m^3].
+    /// In particles, now [m^3].
     double confined() const;
     /// Of the water over its density: energies of height and of motion along the ground [m^5/s^2]. Also the sum of
     /// volume times speed [m^4/s].
@@ -45,18 +45,18 @@ public:
     void serialize(Archive& archive);
 
 private:
-    void move_columns();
+    void move_particles();
     void confine();
     void mix();
     void touch(const std::vector<Index>& tiles);
     void update_totals();
-    double step_of_columns() const;
+    double step_of_particles() const;
 
-    StructuredFlow columns_;
+    StructuredFlow structured_;
     WaterFlow water_;
     bool alone_;
-    std::vector<Index> confined_;       ///< tiles where the water lies on columns
-    std::vector<Index> reached_tiles_;  ///< tiles where columns were since the last step of the water
+    std::vector<Index> confined_;       ///< tiles where the water lies on particles
+    std::vector<Index> reached_tiles_;  ///< tiles where particles were since the last step of the water
     std::vector<Index> scratch_;
     double volume_given_ = 0.0, potential_ = 0.0, kinetic_ = 0.0;
 };

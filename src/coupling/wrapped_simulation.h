@@ -17,8 +17,8 @@ public:
     std::vector<double> passed() const override { return inner().passed(); }
     bool may_rest() const override { return inner().may_rest(); }
     bool more_comes() const override { return inner().more_comes(); }
-    std::string why_not_add(const Seeds& columns) const override { return inner().why_not_add(columns); }
-    void add(const Seeds& columns) override { inner().add(columns); }
+    std::string why_not_add(const Seeds& particles) const override { return inner().why_not_add(particles); }
+    void add(const Seeds& particles) override { inner().add(particles); }
     const Raster* ground() const override { return inner().ground(); }
     const Friction* friction() const override { return inner().friction(); }
     std::vector<std::string> remarks() const override { return inner().remarks(); }

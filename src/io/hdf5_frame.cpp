@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "io/hdf5_support.h"
-#include "observe/file_columns.h"
+#include "observe/file_arrays.h"
 
 namespace frana {
 
@@ -92,10 +92,10 @@ void put_array(Output& output, hid_t group, const std::string& name, const std::
 }
 
 template <class T>
-void put_column(Output& output, hid_t group, const Field& field, std::vector<hsize_t> shape,
-                const std::vector<std::uint8_t>& outside) {
+void put_array(Output& output, hid_t group, const Field& field, std::vector<hsize_t> shape,
+               const std::vector<std::uint8_t>& outside) {
     std::vector<T> values(static_cast<std::size_t>(field.count * field.components));
-    copy_column(field, outside, values.data());
+    copy_array(field, outside, values.data());
     if (field.components > 1) shape.push_back(static_cast<hsize_t>(field.components));
     put_array(output, group, field.name, field.unit, shape, values.data(), component_names(field));
 }
@@ -104,11 +104,11 @@ void put_field(Output& output, hid_t group, const Field& field, const std::vecto
                const std::vector<std::uint8_t>& outside) {
     switch (storage_of(field)) {
         case Storage::int64:
-            return put_column<std::int64_t>(output, group, field, shape, outside);
+            return put_array<std::int64_t>(output, group, field, shape, outside);
         case Storage::float64:
-            return put_column<double>(output, group, field, shape, outside);
+            return put_array<double>(output, group, field, shape, outside);
         case Storage::float32:
-            return put_column<float>(output, group, field, shape, outside);
+            return put_array<float>(output, group, field, shape, outside);
     }
 }
 
@@ -123,7 +123,7 @@ void put_grid(Output& output, hid_t parent, const Frame& frame, const std::vecto
     put_numbers(output, group, "cell", {grid.cell});
     const std::vector<hsize_t> shape{1, static_cast<hsize_t>(grid.ny), static_cast<hsize_t>(grid.nx)};
     for (const Field& field : frame.nodes) {
-        expect(field.count == grid.size(), "a node column is not as long as the grid");
+        expect(field.count == grid.size(), "a node array is not as long as the grid");
         put_field(output, group, field, shape, outside);
     }
     if (!outside.empty()) put_array(output, group, "outside", "1", shape, outside.data(), {});
@@ -134,7 +134,7 @@ void put_particles(Output& output, hid_t parent, const Frame& frame) {
     expect(position && position->components == 3, "particles have no position of 3 components");
     const Handle group = new_group(output, parent, "particles");
     for (const Field& field : frame.particles) {
-        expect(field.count == position->count, "particle columns differ in length");
+        expect(field.count == position->count, "particle arrays differ in length");
         put_field(output, group, field, {static_cast<hsize_t>(field.count)}, {});
     }
 }

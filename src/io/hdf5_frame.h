@@ -18,7 +18,7 @@ struct FileExtent {
 };
 
 /// Appends the frame as a group (layout: xdmf_writer.h) and closes the file. The first call with `fresh` replaces
-/// whatever stood at `file`. A group of the same number is replaced. `outside` as in observe/file_columns.h. Returns
+/// whatever stood at `file`. A group of the same number is replaced. `outside` as in observe/file_arrays.h. Returns
 /// where the arrays lie: later frames leave those bytes alone. Throws UserError with path and reason when HDF5 cannot
 /// write.
 std::vector<FileExtent> append_frame(const std::filesystem::path& file, bool fresh, const Frame& frame,

@@ -87,10 +87,10 @@ StoredParticles read_hdf5_particles(const std::filesystem::path& path, Index num
     particles.time = numbers_of(access, frame, "time").at(0);
     for (const std::string& name : names_in(access, group)) {
         Numbers numbers = read_numbers(access, group, name);
-        if (numbers.shape.empty() || numbers.shape.size() > 2) throw access.failure(name + " is not a column of a run");
+        if (numbers.shape.empty() || numbers.shape.size() > 2) throw access.failure(name + " is not an array of a run");
         particles.count = static_cast<Index>(numbers.shape[0]);
         particles.components[name] = numbers.shape.size() == 2 ? static_cast<int>(numbers.shape[1]) : 1;
-        particles.columns[name] = std::move(numbers.values);
+        particles.arrays[name] = std::move(numbers.values);
     }
     particles.bed = read_bed(access, frame);
     return particles;

@@ -9,11 +9,11 @@
 
 namespace frana {
 
-/// Particle columns of one frame.
+/// Particle arrays of one frame.
 struct StoredParticles {
     double time = 0.0;  ///< [s]
     Index count = 0;
-    std::map<std::string, std::vector<double>> columns;  ///< count * components numbers, interleaved
+    std::map<std::string, std::vector<double>> arrays;  ///< count * components numbers, interleaved
     std::map<std::string, int> components;
     Raster bed;  ///< grid/elevation; NaN where there is no terrain
 };

@@ -7,7 +7,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "io/hdf5_frame.h"
-#include "observe/file_columns.h"
+#include "observe/file_arrays.h"
 
 namespace frana {
 namespace {

@@ -11,7 +11,7 @@ struct Detrainment {
     double max_speed = std::numeric_limits<double>::infinity();  ///< likewise faster flow [m/s]
     double max_depth = std::numeric_limits<double>::infinity();  ///< and deeper flow, along gravity [m]
 
-    /// A column in the middle of a step.
+    /// A particle in the middle of a step.
     struct State {
         double pressure;   ///< K [Pa]
         double density;    ///< [kg/m^3]
@@ -19,7 +19,7 @@ struct Detrainment {
         double thickness;  ///< normal to the bed [m]
         double speed;      ///< along the bed [m/s]
     };
-    /// Share of its mass that a column loses in `dt` [s], at most 1. Its ground stays, so the loss is even in time.
+    /// Share of its mass that a particle loses in `dt` [s], at most 1. Its ground stays, so the loss is even in time.
     double share(const State& s, double dt) const {
         if (!(s.speed >= min_speed && s.speed <= max_speed && s.depth <= max_depth)) return 0.0;
         const double lost = s.pressure * dt, there = s.density * s.thickness * s.speed;

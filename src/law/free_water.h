@@ -1,5 +1,5 @@
 #pragma once
-// Free water as structured columns meet it: cells around the nodes of the same grid.
+// Free water as structured particles meet it: cells around the nodes of the same grid.
 // Numbers of equations: src/water/THEORY.md.
 #include <algorithm>
 
@@ -9,19 +9,19 @@
 
 namespace frana {
 
-/// How columns and free water act on one another (van den Bout et al. 2021, sec. 2.3; what the paper leaves open is
+/// How particles and free water act on one another (van den Bout et al. 2021, sec. 2.3; what the paper leaves open is
 /// said here).
 struct WaterExchange {
     TwoPhaseMaterial material;
     VirtualMass virtual_mass = VirtualMass::none;
-    /// B, share of the pore pressure that bears the columns where their pores are full [1]
+    /// B, share of the pore pressure that bears the particles where their pores are full [1]
     double pore_pressure = 1.0;
-    /// Free water over bound volume that fills the pores [1]. With less, B goes down in proportion: a column that
+    /// Free water over bound volume that fills the pores [1]. With less, B goes down in proportion: a particle that
     /// stands dry rests on the bed with all its weight. This is that of loose grains, four tenths of them pores.
     double void_ratio = 0.67;
 };
 
-/// The water's own numbers, which columns change: depth [m] and discharge [m^2/s], by storage index.
+/// The water's own numbers, which particles change: depth [m] and discharge [m^2/s], by storage index.
 struct FreeWater {
     WaterExchange by;
     TwoPhaseDrag drag;
@@ -34,8 +34,8 @@ struct FreeWater {
 
     WaterFriction friction_at(Index k) const { return {friction, coefficients[k]}; }
 
-    /// THEORY (17): share of its weight that water takes off a column's bed. It is 1 at most: buoyancy never makes the
-    /// force on the bed tensile.
+    /// THEORY (17): share of its weight that water takes off a particle's bed. It is 1 at most: buoyancy never makes
+    /// the force on the bed tensile.
     double support(double bound_density, double bound_depth, double depth) const {
         const double full = by.void_ratio * bound_depth;
         const double share = depth < full ? depth / full : 1.0;

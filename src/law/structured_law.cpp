@@ -9,8 +9,8 @@ namespace frana {
 namespace {
 
 /// alpha of the cone sqrt(J2) + alpha I1 = k of an angle [rad] with this sine.
-double cone_slope(ColumnYield yield, double sine) {
-    return yield == ColumnYield::plane_strain ? sine / 3.0 : 2.0 * sine / (std::sqrt(3.0) * (3.0 - sine));
+double cone_slope(StructuredYield yield, double sine) {
+    return yield == StructuredYield::plane_strain ? sine / 3.0 : 2.0 * sine / (std::sqrt(3.0) * (3.0 - sine));
 }
 
 }  // namespace
@@ -21,7 +21,7 @@ void large_turn(const Double4& a, Double4& cosine, Double4& sine) {
     for (int n = 0; n < 4; ++n) cosine[n] = std::cos(a[n]), sine[n] = std::sin(a[n]);
 }
 
-ColumnLaw::ColumnLaw(const ColumnMaterial& m)
+StructuredLaw::StructuredLaw(const StructuredMaterial& m)
     : material_(m),
       shear_(0.5 * m.young / (1.0 + m.poisson)),
       bulk_(m.young / (3.0 * (1.0 - 2.0 * m.poisson))),
@@ -35,11 +35,11 @@ ColumnLaw::ColumnLaw(const ColumnMaterial& m)
            "a solid needs 0 <= psi <= phi, 0 < phi");
     expect(m.critical_strain > 0.0 && m.onset >= 0.0, "a solid breaks at a strain above zero");
     alpha_ = cone_slope(m.yield, sine_);
-    k_ = m.yield == ColumnYield::plane_strain ? cosine_ : 6.0 * cosine_ / (std::sqrt(3.0) * (3.0 - sine_));
+    k_ = m.yield == StructuredYield::plane_strain ? cosine_ : 6.0 * cosine_ / (std::sqrt(3.0) * (3.0 - sine_));
     dilates_ = cone_slope(m.yield, std::sin(m.dilatancy));
 }
 
-ConeReturn ColumnLaw::to_cone(double q, double first, double k) const {
+ConeReturn StructuredLaw::to_cone(double q, double first, double k) const {
     const double beyond = q + alpha_ * first - k;
     if (beyond <= 0.0) return {1.0, first, 0.0};
     const double multiplier = beyond / (shear_ + 9.0 * bulk_ * alpha_ * dilates_);
@@ -48,8 +48,9 @@ ConeReturn ColumnLaw::to_cone(double q, double first, double k) const {
     return {left / q, first - 9.0 * bulk_ * dilates_ * multiplier, multiplier};
 }
 
-PlasticStep ColumnLaw::yield(double cohesion, ColumnStress& s) const {
-    return material_.yield == ColumnYield::hexagon ? yield_to_hexagon(cohesion, s) : yield_to_cone(k_ * cohesion, s);
+PlasticStep StructuredLaw::yield(double cohesion, StructuredStress& s) const {
+    return material_.yield == StructuredYield::hexagon ? yield_to_hexagon(cohesion, s)
+                                                       : yield_to_cone(k_ * cohesion, s);
 }
 
 namespace {
@@ -79,7 +80,7 @@ constexpr double kStressError = 1e-7;  // of zz, over the strength and the weigh
 
 /// Finds the strain t across the bed, beyond that of the elastic step. At t the 3D return leaves zz where it was
 /// prescribed. Finds it wherever it is.
-PlasticStep ColumnLaw::search_cone(double k, ColumnStress& s) const {
+PlasticStep StructuredLaw::search_cone(double k, StructuredStress& s) const {
     const double first = s.xx + s.yy + s.zz, mean = first / 3.0, g = shear_, bulk = bulk_;
     const double x = s.xx - mean, y = s.yy - mean, z = s.zz - mean, xy = s.xy;
     const double in_plane = 0.5 * (x * x + y * y) + xy * xy;
@@ -115,13 +116,14 @@ PlasticStep ColumnLaw::search_cone(double k, ColumnStress& s) const {
 }
 
 /// search_cone where Newton's method gets there from the elastic step, or from where the mean stress is zz. The flow
-/// must be that of the cone's side. Returns in which columns. `plastic`: of those. With t the deviator's z moves, x and
-/// y by half as much against it, and I1. What zz misses is all but linear in t, and two passes mostly do. A pass has
-/// one root, q = sqrt(J2) of the trial, and one division. That is q^3 times what is missed over q^3 times its slope.
+/// must be that of the cone's side. Returns in which particles. `plastic`: of those. With t the deviator's z moves, x
+/// and y by half as much against it, and I1. What zz misses is all but linear in t, and two passes mostly do. A pass
+/// has one root, q = sqrt(J2) of the trial, and one division. That is q^3 times what is missed over q^3 times its
+/// slope.
 template <class Real, class Mask>
-inline Mask ColumnLaw::newton_to_cone(Mask yields, Real k, ColumnStressOf<Real>& s,
-                                      PlasticStepOf<Real>& plastic) const {
-    constexpr int kUnasked = 2, kMost = 6;  // passes: a choice after each would delay the next columns
+inline Mask StructuredLaw::newton_to_cone(Mask yields, Real k, StructuredStressOf<Real>& s,
+                                          PlasticStepOf<Real>& plastic) const {
+    constexpr int kUnasked = 2, kMost = 6;  // passes: a choice after each would delay the next particles
     const double g = shear_, bulk = bulk_, turn = 4.0 / 3.0 * g, per = 1.0 / (g + 9.0 * bulk * alpha_ * dilates_);
     const double kept = 1.0 - g * per,
                  swell = 3.0 * bulk * dilates_ * per;  // of q, in what is left of q and in the mean
@@ -146,7 +148,7 @@ inline Mask ColumnLaw::newton_to_cone(Mask yields, Real k, ColumnStressOf<Real>&
         t = pass < kUnasked ? newton : select(open, newton, t);
     }
     const Mask found = (on_side ^ open) & rises;
-    q = select(q > 0.0, q, one);  // of columns that do not yield
+    q = select(q > 0.0, q, one);  // of particles that do not yield
     const Real multiplier = per * (q + axis + lean * t), scale = left / q, middle = s.zz + lifted - 0.5 * scale * sz;
     const Real flow = 0.5 * multiplier / q, half_trace = dilates_ * multiplier - 0.5 * flow * sz;
     s.xx = select(found, middle + scale * across, s.xx);
@@ -156,7 +158,7 @@ inline Mask ColumnLaw::newton_to_cone(Mask yields, Real k, ColumnStressOf<Real>&
     return found;
 }
 
-PlasticStep ColumnLaw::yield_to_cone(double k, ColumnStress& s) const {
+PlasticStep StructuredLaw::yield_to_cone(double k, StructuredStress& s) const {
     PlasticStep plastic;
     return newton_to_cone(true, k, s, plastic) ? plastic : search_cone(k, s);
 }
@@ -182,7 +184,7 @@ double rate(const Face& of, const Face& flow, double poisson) {
 /// The plane has principal values s_1 >= s_2. The pyramid with zz as prescribed is bounded by s_1 <= high, s_2 >= low,
 /// (s_1 - s_2) + (s_1 + s_2) sin(phi) <= 2 c cos(phi). Elastic and plastic strain across the bed are free. So stress is
 /// taken away by the stiffness of plane stress. Faces first, then the corners between them (Koiter).
-PlasticStep ColumnLaw::yield_to_hexagon(double cohesion, ColumnStress& s) const {
+PlasticStep StructuredLaw::yield_to_hexagon(double cohesion, StructuredStress& s) const {
     const double centre = 0.5 * (s.xx + s.yy), half = 0.5 * (s.xx - s.yy), radius = std::hypot(half, s.xy);
     const double cosine = radius > 0.0 ? half / radius : 1.0, sine = radius > 0.0 ? s.xy / radius : 0.0;
     const double up = 1.0 + std::sin(material_.dilatancy), down = 1.0 - std::sin(material_.dilatancy);
@@ -224,7 +226,8 @@ PlasticStep ColumnLaw::yield_to_hexagon(double cohesion, ColumnStress& s) const 
     return {strain[0] + strain[1], std::max(strain[0], strain[1])};
 }
 
-void ColumnLaw::give_way(bool, const ColumnStep& step, double left, ColumnStress& s, ColumnState& state) const {
+void StructuredLaw::give_way(bool, const StructuredStep& step, double left, StructuredStress& s,
+                             StructuredState& state) const {
     const PlasticStep plastic = yield(left, s);
     const double critical = material_.critical_strain;
     if (material_.damage_by == DamageBy::strain) {
@@ -236,8 +239,8 @@ void ColumnLaw::give_way(bool, const ColumnStep& step, double left, ColumnStress
     state.damage = std::min(1.0, state.damage + std::max(0.0, opened) / critical);
 }
 
-void ColumnLaw::give_way(const Mask4& yields, const ColumnStepOf<Double4>& step, const Double4& left,
-                         ColumnStressOf<Double4>& s, ColumnStateOf<Double4>& state) const {
+void StructuredLaw::give_way(const Mask4& yields, const StructuredStepOf<Double4>& step, const Double4& left,
+                             StructuredStressOf<Double4>& s, StructuredStateOf<Double4>& state) const {
     Mask4 alone = yields;
     if (!is_hexagon() && material_.damage_by == DamageBy::dilation) {
         PlasticStepOf<Double4> plastic;
@@ -249,9 +252,9 @@ void ColumnLaw::give_way(const Mask4& yields, const ColumnStepOf<Double4>& step,
     if (!any(alone)) return;
     for (int n = 0; n < 4; ++n) {
         if (!alone[n]) continue;
-        ColumnStress lone{s.xx[n], s.yy[n], s.zz[n], s.xy[n]};
-        ColumnState kept{{}, state.damage[n], state.strain[n]};
-        give_way(true, ColumnStep{step.xx[n], step.yy[n], step.xy[n], 0.0}, left[n], lone, kept);
+        StructuredStress lone{s.xx[n], s.yy[n], s.zz[n], s.xy[n]};
+        StructuredState kept{{}, state.damage[n], state.strain[n]};
+        give_way(true, StructuredStep{step.xx[n], step.yy[n], step.xy[n], 0.0}, left[n], lone, kept);
         s.xx[n] = lone.xx, s.yy[n] = lone.yy, s.xy[n] = lone.xy;
         state.damage[n] = kept.damage;
     }

@@ -1,59 +1,59 @@
 #pragma once
-// Structured solids: how the stress of a depth-averaged column goes on with its deformation in the plane. It is elastic
-// until it yields, and yielding breaks it. After van den Bout et al. (2021, doi:10.5194/gmd-14-1841-2021, sec. 2.2,
-// with the stress across the bed prescribed by the weight). Tension is positive. Functions are for one column (Real is
-// double) or for four at once (Double4). Numbers of equations: src/structured/THEORY.md.
+// Structured solids: how the stress of a depth-averaged particle goes on with its deformation in the plane. It is
+// elastic until it yields, and yielding breaks it. After van den Bout et al. (2021, doi:10.5194/gmd-14-1841-2021, sec.
+// 2.2, with the stress across the bed prescribed by the weight). Tension is positive. Functions are for one particle
+// (Real is double) or for four at once (Double4). Numbers of equations: src/structured/THEORY.md.
 #include <cmath>
 
 #include "base/simd.h"
 
 namespace frana {
 
-/// Stress of a column, the mean over its depth [Pa]; zz across the bed.
+/// Stress of a particle, the mean over its depth [Pa]; zz across the bed.
 template <class Real>
-struct ColumnStressOf {
+struct StructuredStressOf {
     Real xx{}, yy{}, zz{}, xy{};
 };
-using ColumnStress = ColumnStressOf<double>;
+using StructuredStress = StructuredStressOf<double>;
 
-/// What a step does to a column in the plane: strain [1], xy as the tensor has it, and turn,
+/// What a step does to a particle in the plane: strain [1], xy as the tensor has it, and turn,
 /// counter-clockwise [rad].
 template <class Real>
-struct ColumnStepOf {
+struct StructuredStepOf {
     Real xx{}, yy{}, xy{}, turn{};
 
     /// Of the velocity gradient L_kl = dv_k/dx_l [1/s] over dt [s].
-    [[gnu::always_inline]] static ColumnStepOf of(Real lxx, Real lxy, Real lyx, Real lyy, double dt) {
+    [[gnu::always_inline]] static StructuredStepOf of(Real lxx, Real lxy, Real lyx, Real lyy, double dt) {
         return {dt * lxx, dt * lyy, 0.5 * dt * (lxy + lyx), 0.5 * dt * (lyx - lxy)};
     }
 };
-using ColumnStep = ColumnStepOf<double>;
+using StructuredStep = StructuredStepOf<double>;
 
-/// What a column of this law stores.
+/// What a particle of this law stores.
 template <class Real>
-struct ColumnStateOf {
-    ColumnStressOf<Real> stress;
+struct StructuredStateOf {
+    StructuredStressOf<Real> stress;
     Real damage{};  ///< 0 whole, 1 grains
     Real strain{};  ///< sum of |strain| so far, which DamageBy::strain counts its onset by [1]
 };
-using ColumnState = ColumnStateOf<double>;
+using StructuredState = StructuredStateOf<double>;
 
-/// Where the column yields. Cones of Drucker and Prager that meet Mohr and Coulomb's pyramid in triaxial
+/// Where the particle yields. Cones of Drucker and Prager that meet Mohr and Coulomb's pyramid in triaxial
 /// compression, or in plane strain without dilatancy. Or the pyramid itself, which the prescribed zz cuts in a hexagon.
-enum class ColumnYield { compression, plane_strain, hexagon };
+enum class StructuredYield { compression, plane_strain, hexagon };
 
-/// THEORY (18): what breaks bonds while the column yields, in parts of the critical strain. dilation: the plastic
+/// THEORY (18): what breaks bonds while the particle yields, in parts of the critical strain. dilation: the plastic
 /// dilation in the plane, as in the paper. extension: the largest principal plastic strain. strain: any strain at all,
 /// behind an onset, with what is left decaying exponentially, as in the paper's source code.
 enum class DamageBy { dilation, extension, strain };
 
 /// What a user says of a structured solid.
-struct ColumnMaterial {
+struct StructuredMaterial {
     double young = 1e6;      ///< E [Pa]
     double poisson = 0.3;    ///< nu [1]
     double friction = 0.5;   ///< phi, internal angle [rad], 0 to pi / 2
     double dilatancy = 0.0;  ///< psi [rad], 0 to phi
-    ColumnYield yield = ColumnYield::compression;
+    StructuredYield yield = StructuredYield::compression;
     DamageBy damage_by = DamageBy::dilation;
     double critical_strain = 0.1;  ///< eps_c at which no bond is left [1]
     double onset = 0.0;            ///< strain before which DamageBy::strain breaks nothing [1]
@@ -87,11 +87,11 @@ struct TurnOf {
     [[gnu::always_inline]] static TurnOf by(Real angle);
 };
 
-class ColumnLaw {
+class StructuredLaw {
 public:
-    explicit ColumnLaw(const ColumnMaterial& material);
-    const ColumnMaterial& material() const { return material_; }
-    bool is_hexagon() const { return material_.yield == ColumnYield::hexagon; }
+    explicit StructuredLaw(const StructuredMaterial& material);
+    const StructuredMaterial& material() const { return material_; }
+    bool is_hexagon() const { return material_.yield == StructuredYield::hexagon; }
     double bulk() const { return bulk_; }
     double shear() const { return shear_; }
     double alpha() const { return alpha_; }                           ///< of the cone: sqrt(J2) + alpha I1 = k
@@ -104,8 +104,8 @@ public:
     /// THEORY (11), (12): the step with zz = `weight` [Pa, negative] at its end and the undamaged `cohesion` [Pa]. It
     /// is half the turn, the strain, half the turn. Damage of this step weakens the next.
     template <class Real>
-    [[gnu::always_inline]] void update(const ColumnStepOf<Real>& step, Real weight, Real cohesion,
-                                       ColumnStateOf<Real>& state) const {
+    [[gnu::always_inline]] void update(const StructuredStepOf<Real>& step, Real weight, Real cohesion,
+                                       StructuredStateOf<Real>& state) const {
         if (is_hexagon())
             update_as<true>(step, weight, cohesion, state);
         else
@@ -113,11 +113,11 @@ public:
     }
     /// The same where the yield surface is known before a loop.
     template <bool kHexagon, class Real>
-    [[gnu::always_inline]] void update_as(const ColumnStepOf<Real>& step, Real weight, Real cohesion,
-                                          ColumnStateOf<Real>& state) const {
+    [[gnu::always_inline]] void update_as(const StructuredStepOf<Real>& step, Real weight, Real cohesion,
+                                          StructuredStateOf<Real>& state) const {
         const Real left = cohesion * (1.0 - state.damage);
         const TurnOf<Real> half = TurnOf<Real>::by(0.5 * step.turn);
-        ColumnStressOf<Real> s = predicted<Real>(turned<Real>(state.stress, half), step, weight);
+        StructuredStressOf<Real> s = predicted<Real>(turned<Real>(state.stress, half), step, weight);
         state.strain += abs(step.xx) + abs(step.yy) + 2.0 * abs(step.xy);
         const auto yields = excess_as<kHexagon, Real>(s, left) > 0.0;
         if (__builtin_expect(any(yields), 0)) give_way(yields, step, left, s, state);
@@ -127,11 +127,11 @@ public:
     /// THEORY (13), (17): how far a stress lies outside the yield surface [Pa]: sqrt(J2) + alpha I1 - k, or the largest
     /// of the hexagon's.
     template <class Real>
-    [[gnu::always_inline]] Real excess(const ColumnStressOf<Real>& s, Real cohesion) const {
+    [[gnu::always_inline]] Real excess(const StructuredStressOf<Real>& s, Real cohesion) const {
         return is_hexagon() ? excess_as<true, Real>(s, cohesion) : excess_as<false, Real>(s, cohesion);
     }
     template <bool kHexagon, class Real>
-    [[gnu::always_inline]] Real excess_as(const ColumnStressOf<Real>& s, Real cohesion) const {
+    [[gnu::always_inline]] Real excess_as(const StructuredStressOf<Real>& s, Real cohesion) const {
         if constexpr (kHexagon) return hexagon_excess<Real>(s, cohesion);
         const Real first = s.xx + s.yy + s.zz, mean = (1.0 / 3.0) * first;
         const Real x = s.xx - mean, y = s.yy - mean, z = s.zz - mean;
@@ -142,42 +142,44 @@ public:
     /// of strength k, its apex included, for any dilatancy.
     ConeReturn to_cone(double q, double first, double k) const;
     /// Elastic stress `s`, zz as prescribed, to the yield surface with zz as it is.
-    PlasticStep yield(double cohesion, ColumnStress& s) const;
+    PlasticStep yield(double cohesion, StructuredStress& s) const;
 
 private:
     /// R s R^T; zz stays.
     template <class Real>
-    [[gnu::always_inline]] static ColumnStressOf<Real> turned(const ColumnStressOf<Real>& s, const TurnOf<Real>& turn) {
+    [[gnu::always_inline]] static StructuredStressOf<Real> turned(const StructuredStressOf<Real>& s,
+                                                                  const TurnOf<Real>& turn) {
         const Real centre = 0.5 * (s.xx + s.yy), half = 0.5 * (s.xx - s.yy);
         const Real across = half * turn.cosine - s.xy * turn.sine;
         return {centre + across, centre - across, s.zz, half * turn.sine + s.xy * turn.cosine};
     }
     template <class Real>
-    [[gnu::always_inline]] ColumnStressOf<Real> predicted(const ColumnStressOf<Real>& s, const ColumnStepOf<Real>& step,
-                                                          Real weight) const {
+    [[gnu::always_inline]] StructuredStressOf<Real> predicted(const StructuredStressOf<Real>& s,
+                                                              const StructuredStepOf<Real>& step, Real weight) const {
         const Real lift = weight_share_ * (weight - s.zz);
         return {s.xx + plane_ * (step.xx + material_.poisson * step.yy) + lift,
                 s.yy + plane_ * (step.yy + material_.poisson * step.xx) + lift, weight, s.xy + 2.0 * shear_ * step.xy};
     }
     template <class Real>
-    [[gnu::always_inline]] Real hexagon_excess(const ColumnStressOf<Real>& s, Real cohesion) const {
+    [[gnu::always_inline]] Real hexagon_excess(const StructuredStressOf<Real>& s, Real cohesion) const {
         const Real centre = 0.5 * (s.xx + s.yy), half = 0.5 * (s.xx - s.yy);
         const Real radius = sqrt(half * half + s.xy * s.xy);
         const Real most = max(centre + radius, s.zz), least = min(centre - radius, s.zz);
         return (most - least) + (most + least) * sine_ - 2.0 * cosine_ * cohesion;
     }
     // Four by reference: by value they travel differently between files built for different instruction sets.
-    void give_way(bool yields, const ColumnStep& step, double left, ColumnStress& s, ColumnState& state) const;
-    void give_way(const Mask4& yields, const ColumnStepOf<Double4>& step, const Double4& left,
-                  ColumnStressOf<Double4>& s, ColumnStateOf<Double4>& state) const;
+    void give_way(bool yields, const StructuredStep& step, double left, StructuredStress& s,
+                  StructuredState& state) const;
+    void give_way(const Mask4& yields, const StructuredStepOf<Double4>& step, const Double4& left,
+                  StructuredStressOf<Double4>& s, StructuredStateOf<Double4>& state) const;
     template <class Real, class Mask>
-    [[gnu::always_inline]] Mask newton_to_cone(Mask yields, Real k, ColumnStressOf<Real>& s,
+    [[gnu::always_inline]] Mask newton_to_cone(Mask yields, Real k, StructuredStressOf<Real>& s,
                                                PlasticStepOf<Real>& plastic) const;
-    PlasticStep yield_to_cone(double k, ColumnStress& s) const;
-    PlasticStep search_cone(double k, ColumnStress& s) const;
-    PlasticStep yield_to_hexagon(double cohesion, ColumnStress& s) const;
+    PlasticStep yield_to_cone(double k, StructuredStress& s) const;
+    PlasticStep search_cone(double k, StructuredStress& s) const;
+    PlasticStep yield_to_hexagon(double cohesion, StructuredStress& s) const;
 
-    ColumnMaterial material_;
+    StructuredMaterial material_;
     double shear_, bulk_, plane_, weight_share_;    ///< G, K, E / (1 - nu^2) [Pa]; nu / (1 - nu)
     double sine_, cosine_, active_;                 ///< of phi; Ka
     double alpha_ = 0.0, k_ = 0.0, dilates_ = 0.0;  ///< of the cone; k over cohesion; alpha at psi

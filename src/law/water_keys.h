@@ -1,5 +1,5 @@
 #pragma once
-// The keys of what columns and free water do to one another, and of the water's viscosity.
+// The keys of what particles and free water do to one another, and of the water's viscosity.
 #include <vector>
 
 #include "law/free_water.h"
@@ -20,7 +20,7 @@ inline std::vector<Key<TwoPhaseMaterial>> two_phase_keys() {
 
 inline std::vector<Key<WaterExchange>> water_exchange_keys() {
     return {{&WaterExchange::pore_pressure, "pore_pressure", "1", ranges::fraction,
-             "share of the pores' pressure that bears the columns on the bed where pores are full", Missing::usual},
+             "share of the pores' pressure that bears the particles on the bed where pores are full", Missing::usual},
             {&WaterExchange::void_ratio, "void_ratio", "1", ranges::positive,
              "free water over grains and their confined water that fills the pores", Missing::usual}};
 }

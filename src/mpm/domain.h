@@ -16,7 +16,7 @@ struct Edges {
     double area() const { return r1x * r2y - r1y * r2x; }  ///< with its sign [cells^2]
 };
 
-/// Those of point p (Held: Carried of shallow/columns.h).
+/// Those of point p (Held: Carried of shallow/particles.h).
 template <class Held>
 Edges edges_of(const Held& held, Index p) {
     return {held.r1x[p], held.r1y[p], held.r2x[p], held.r2y[p]};

@@ -1,5 +1,5 @@
 #pragma once
-// Halving points whose domains have grown. It serves any model that has columns with the names of shallow/columns.h
+// Halving points whose domains have grown. It serves any model that has arrays with the names of shallow/particles.h
 // (Points; Held: where what they carry lies). Numbers of equations: src/shallow/THEORY.md.
 #include <algorithm>
 #include <cmath>
@@ -128,7 +128,7 @@ void halve(Points& c, Held& held, Index p, Index q, bool first, double cell) {
     rx *= Real{0.5};
     ry *= Real{0.5};
     c.halve(p);
-    c.each([&](auto& column) { column[q] = column[p]; });
+    c.each([&](auto& array) { array[q] = array[p]; });
     const Real dvx = static_cast<Real>(cell * (held.cxx[p] * dx + held.cxy[p] * dy));
     const Real dvy = static_cast<Real>(cell * (held.cyx[p] * dx + held.cyy[p] * dy));
     c.x[q] = c.x[p] - dx;

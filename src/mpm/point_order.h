@@ -77,7 +77,7 @@ private:
     std::size_t parts_in_use_ = 1;           ///< small lists have one
     std::vector<std::int32_t> used_;         ///< tiles with points
     std::vector<Index> first_;               ///< of the points that stay, by position in ActiveTiles
-    Array scratch_;                          ///< columns are permuted one by one through it
+    Array scratch_;                          ///< arrays are permuted one by one through it
 };
 
 }  // namespace frana

@@ -14,26 +14,26 @@ inline UserError misfit(const std::string& what) {
     return UserError("the kept state does not fit this case: " + what + "; run without --resume");
 }
 
-inline void serialize_array(Archive& archive, const std::string& name, Array& column) { archive.array(name, column); }
+inline void serialize_array(Archive& archive, const std::string& name, Array& array) { archive.array(name, array); }
 
 /// Every float is a double.
-inline void serialize_array(Archive& archive, const std::string& name, ArrayOf<float>& column) {
-    Array wide(column.begin(), column.end());
+inline void serialize_array(Archive& archive, const std::string& name, ArrayOf<float>& array) {
+    Array wide(array.begin(), array.end());
     archive.array(name, wide);
     if (!archive.loading()) return;
-    column.resize(wide.size());
-    std::transform(wide.begin(), wide.end(), column.begin(), [](double value) { return static_cast<float>(value); });
+    array.resize(wide.size());
+    std::transform(wide.begin(), wide.end(), array.begin(), [](double value) { return static_cast<float>(value); });
 }
 
-/// All columns of `points`, and their ids; name(n): what the archive calls column n.
+/// All arrays of `points`, and their ids; name(n): what the archive calls array n.
 template <class Points, class Name>
 void serialize_points(Archive& archive, Points& points, const Name& name) {
     const Archive::Part part(archive, "points");
     std::size_t n = 0;
-    points.each([&](auto& column) { serialize_array(archive, name(n++), column); });
+    points.each([&](auto& array) { serialize_array(archive, name(n++), array); });
     archive.array("id", points.id);
-    points.each([&](auto& column) {
-        if (column.size() != points.id.size()) throw misfit("its columns of points differ in length");
+    points.each([&](auto& array) {
+        if (array.size() != points.id.size()) throw misfit("its arrays of points differ in length");
     });
 }
 template <class Points>

@@ -110,7 +110,7 @@ void Barriers::note_contact(BarrierSummary& summary, double time) {
         if (mean.largest > 0.0) mean.time = time;
 }
 
-/// What is known of columns too.
+/// What is known of particles too.
 void Barriers::take(std::size_t n, const BarrierLoad& load) {
     summaries_[n].about = load.about;
     summaries_[n].run_up = load.run_up;

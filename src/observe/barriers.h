@@ -29,8 +29,8 @@ struct MeanForce {
 struct BarrierSummary {
     std::string name;
     double first_contact =
-        -1.0;                 ///< [s]; -1: never. When points are at a face or, with columns alone, by the depth there
-    double peak_force = 0.0;  ///< largest horizontal force, mean over `blur` [N]
+        -1.0;  ///< [s]; -1: never. When points are at a face or, with particles alone, by the depth there
+    double peak_force = 0.0;       ///< largest horizontal force, mean over `blur` [N]
     double peak_force_time = 0.0;  ///< end of that interval, or the first contact if that is later [s]
     double raw_peak_force = 0.0;   ///< largest of a single step: as hard as the artificial sound is fast [N]
     double blur = 0.0;             ///< [s]
@@ -57,8 +57,8 @@ inline constexpr std::size_t kMostBarrierTables = 24;
 /// barriers/<name>.csv: forces and moments on each barrier after every step, means over the step; appended at
 /// every output. Columns: t [s], fx, fy, fz [N], mx, my, mz [N m], mean_force [N] (horizontal, mean over
 /// `blur` up to now), run_up [m] and overtopped [m3]. Then come f0x, f0y, f0z [N], m0x, m0y, m0z [N m] of face 0, and
-/// so on. Where no forces are known (columns alone) t, run_up and overtopped. More than kMostBarrierTables barriers,
-/// which columns alone can have, leave their summaries only.
+/// so on. Where no forces are known (particles alone) t, run_up and overtopped. More than kMostBarrierTables barriers,
+/// which particles alone can have, leave their summaries only.
 class Barriers final : public Observer {
 public:
     Barriers(std::filesystem::path run_dir, const std::vector<NamedBarrier>& barriers,

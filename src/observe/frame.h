@@ -1,5 +1,5 @@
 #pragma once
-// A state for the outside: named columns with units. Writers and figures use frames, never the solver.
+// A state for the outside: named arrays with units. Writers and figures use frames, never the solver.
 #include <array>
 #include <optional>
 #include <string>
@@ -78,7 +78,7 @@ struct PhaseTime {
 struct Breakage {
     double damage = 0.0;             ///< mean over the mass, 0 whole, 1 grains [1]
     std::vector<double> pieces;      ///< shares of the mass in unbroken pieces, the largest first [1]
-    Index pairs = 0;                 ///< of columns that were neighbours at the start
+    Index pairs = 0;                 ///< of particles that were neighbours at the start
     Index torn = 0;                  ///< of these, now apart
     Index numerical = 0;             ///< of these, without damage to either: torn by the scheme
     double sub_cycling = 1.0;        ///< steps for each that the depth-averaged flow would need
@@ -95,7 +95,7 @@ struct PointsApart {
 
 /// What came in by inflows.
 struct InflowBudget {
-    double volume = 0.0;    ///< by the columns' masses [m3]
+    double volume = 0.0;    ///< by the particles' masses [m3]
     double expected = 0.0;  ///< by the tables, up to the last row of each that came in [m3]
     double tables = 0.0;    ///< by the whole tables [m3]
 };
@@ -109,18 +109,18 @@ struct LateEntry {
     bool of_bed = false;            ///< it is cut out of the bed when it enters
 };
 
-/// Free water, and that which columns confine.
+/// Free water, and that which particles confine.
 struct WaterBudget {
     double given = 0.0, free = 0.0, confined = 0.0;      ///< at the start, all; now [m3]
     double released = 0.0;                               ///< by what broke, since the start [m3]
-    double rained = 0.0, infiltrated = 0.0, left = 0.0;  ///< the last also within columns [m3]
+    double rained = 0.0, infiltrated = 0.0, left = 0.0;  ///< the last also within particles [m3]
     double entered = 0.0;                                ///< from a lake beyond open sides [m3]
     double fed = 0.0;                                    ///< by inflows [m3]
     double infiltrated_mass = 0.0;                       ///< [kg]
-    double solids_left = 0.0;                            ///< grains that left within columns, without pores [m3]
+    double solids_left = 0.0;                            ///< grains that left within particles, without pores [m3]
     double residual = 0.0;                               ///< of all these: round-off [m3]
     double bed = 0.0, viscosity = 0.0, drag = 0.0;       ///< energy lost there [J]
-    double steps = 0.0;                                  ///< of the columns for each of the water
+    double steps = 0.0;                                  ///< of the particles for each of the water
 };
 
 /// What only some models can tell of a run; nothing of the others.

@@ -26,8 +26,8 @@ struct FaceLoad {
 struct BarrierLoad {
     std::vector<FaceLoad> faces;  ///< none where no forces are known
     Vec3 about{0, 0, 0};          ///< place that moments are about: the middle of the outline, on the bed [m]
-    /// Elevation of the highest top ever of what came to it [m]: of columns within two cells, of points 99.9 % there. Not a
-    /// number as long as nothing came.
+    /// Elevation of the highest top ever of what came to it [m]: of particles within two cells, of points 99.9 % there.
+    /// Not a number as long as nothing came.
     double run_up = std::numeric_limits<double>::quiet_NaN();
     double overtopped = 0.0;  ///< material that was over it at any time [m3]
     bool touched = false;     ///< points have come to a face

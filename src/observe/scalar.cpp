@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
-#include "observe/file_columns.h"
+#include "observe/file_arrays.h"
 
 namespace frana {
 

@@ -28,7 +28,7 @@ struct SectionLine {
 struct SectionSummary {
     std::string name;
     Vec2 towards{1, 0};                  ///< unit vector: the positive sense
-    double volume = 0.0;                 ///< net, counted by columns that passed [m3]
+    double volume = 0.0;                 ///< net, counted by particles that passed [m3]
     double sediment = 0.0;               ///< of it, solid [m3]
     double integral = 0.0;               ///< of the discharge over time [m3]
     double peak = 0.0, peak_time = 0.0;  ///< largest discharge, in the positive sense [m3/s]; [s]

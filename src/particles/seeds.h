@@ -5,7 +5,7 @@
 
 namespace frana {
 
-/// The material points at the start of a run, one array per quantity, equal lengths. A point is a column of
+/// The material points at the start of a run, one array per quantity, equal lengths. A point is an array of
 /// material. Its mass is the integral of the release over the point's own patch of the map.
 struct Seeds {
     std::vector<double> x, y;    ///< map position [m]
@@ -18,8 +18,8 @@ struct Seeds {
 
     /// Those of `from` with numbers from `begin` to before `end`, behind the ones that are here.
     void append(const Seeds& from, Index begin, Index end) {
-        for (auto column : {&Seeds::x, &Seeds::y, &Seeds::vx, &Seeds::vy, &Seeds::volume, &Seeds::depth, &Seeds::size})
-            (this->*column).insert((this->*column).end(), (from.*column).begin() + begin, (from.*column).begin() + end);
+        for (auto array : {&Seeds::x, &Seeds::y, &Seeds::vx, &Seeds::vy, &Seeds::volume, &Seeds::depth, &Seeds::size})
+            (this->*array).insert((this->*array).end(), (from.*array).begin() + begin, (from.*array).begin() + end);
     }
 };
 

@@ -30,7 +30,7 @@ public:
     virtual bool may_rest() const { return true; }
     /// Whether material is still to come, so that a run without any is not over.
     virtual bool more_comes() const { return false; }
-    /// The state at status().time as named columns; borrowed until the next call of advance() or frame().
+    /// The state at status().time as named arrays; borrowed until the next call of advance() or frame().
     virtual Frame frame() = 0;
     /// The status of that frame, for callers that need none of its fields. It too ends what a borrowed frame points to.
     virtual Status frame_status() { return frame().status; }
@@ -42,8 +42,8 @@ public:
         return "found a case with 3D points or structured solids; expected one of depth-averaged flow alone; give what "
                "comes later as a release or an inflow of the case";
     }
-    /// Adds columns between two steps: mass and momentum come in as those of inflows do (Status::mass_in). While the state is
-    /// put aside they wait for the step after it.
+    /// Adds particles between two steps: mass and momentum come in as those of inflows do (Status::mass_in). While the
+    /// state is put aside they wait for the step after it.
     virtual void add(const Seeds&) { throw InternalError("internal error: this model takes no material from outside"); }
     /// The ground that the run works on now, where that has grown beyond the scene's; frames lie within it.
     virtual const Raster* ground() const { return nullptr; }

@@ -57,7 +57,7 @@ void remark_on_releases_in_boxes(Scene& scene) {
             if (box.holds({seeds.x[p], seeds.y[p]})) volume += seeds.volume[p];
         if (volume > 0.0)
             scene.log.push_back(fmt::format(
-                "barrier \"{}\": found {:.4g} m3 of releases within it; expected none, since structured columns fill "
+                "barrier \"{}\": found {:.4g} m3 of releases within it; expected none, since structured particles fill "
                 "no barrier and depths there are too large; move the outlines apart",
                 barrier.name, volume));
     }

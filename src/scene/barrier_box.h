@@ -1,11 +1,11 @@
 #pragma once
-// The box that structured columns meet in place of a barrier.
+// The box that structured particles meet in place of a barrier.
 #include "scene/scene.h"
 
 namespace frana {
 
 /// Least width of a box [cells]. It then holds three rows of nodes. Shape functions are three cells wide: with fewer rows
-/// a column before it has nodes behind it, and goes through.
+/// a particle before it has nodes behind it, and goes through.
 constexpr double kBoxCells = 3.0;
 
 /// A rectangle along x and y [m].
@@ -24,7 +24,7 @@ double lowest_ground(const Barrier& barrier, const Raster& bed);
 /// Whether the barrier's top lies no higher than all ground that it stands on: nothing meets it.
 bool is_buried(const Barrier& barrier, const Raster& bed);
 
-/// A remark on each barrier in whose box structured columns are released.
+/// A remark on each barrier in whose box structured particles are released.
 void remark_on_releases_in_boxes(Scene& scene);
 
 }  // namespace frana

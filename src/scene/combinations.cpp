@@ -101,13 +101,13 @@ void add_scheme_of(std::vector<Combination>& table, const OtherModel& model) {
     unused({"scheme.stress_cap", Are::given}, "none: " + model.who + " has no rheology");
 }
 
-/// What only the depth-averaged flow has: neither structured columns nor free water do.
+/// What only the depth-averaged flow has: neither structured particles nor free water do.
 void add_structure(std::vector<Combination>& table) {
     const Values structure = is_not("material.structure.law", {"none"}), free = is("water.model", {"free"});
     const std::vector<Values> either = {structure, free};
     table.push_back({{"terrain.unrolled", Are::on},
                      {is("material.structure.law", {"none"})},
-                     "expected it with structured columns only",
+                     "expected it with structured particles only",
                      "remove it, or give the mass a structure"});
     table.push_back({is_not("material.rheology.law", {"none"}),
                      {structure},
@@ -135,7 +135,7 @@ void add_structure(std::vector<Combination>& table) {
                      "remove it, or use [[gauge]] or [[profile]]"});
     table.push_back({{"stage", Are::tables},
                      either,
-                     "expected none: structured columns and free water go from the start to the end",
+                     "expected none: structured particles and free water go from the start to the end",
                      "remove it"});
 }
 
@@ -433,7 +433,7 @@ const std::vector<Combination>& combinations() {
         add_structure(table);
         add_scheme_of(table, {is_not("material.structure.law", {"none"}),
                               {},
-                              "a structured column",
+                              "a structured particle",
                               {},
                               "remove it, and give material.structure.cfl"});
         add_water(table);

@@ -33,8 +33,9 @@ constexpr double graphics_need = 350e6;  ///< besides, for pictures: software Op
 /// A 3D grid has an entry for each of its tiles, and storage of those that are reached only.
 constexpr double tile_nodes_3d = 512.0, bytes_per_tile_3d = 16.0;
 
-/// For each node of the terrain with a 3D stage: its own copy of the bed, the points' ground, their depth for columns,
-/// and marks. Besides, for each that points can give to: what stands there, its peaks, and columns beside them.
+/// For each node of the terrain with a 3D stage: its own copy of the bed, the points' ground, their depth for
+/// particles, and marks. Besides, for each that points can give to: what stands there, its peaks, and particles beside
+/// them.
 constexpr double stage_rate = 3.0 * sizeof(double) + 2.0, points_map_rate = 18.0 * sizeof(double);
 
 double memory_of_stage(const Scene& scene) {
@@ -94,7 +95,7 @@ double memory_of(const Friction& friction, double nodes) {
     return of(friction.laws) + of(friction.rheologies) + of(friction.water);
 }
 
-/// Columns begin from a copy of the fields that barriers stand in.
+/// Particles begin from a copy of the fields that barriers stand in.
 double memory_of_fields_among_barriers(const Scene& scene, double nodes) {
     const double fields =
         1.0 + (scene.erodible ? 1.0 : 0.0) + (scene.forest ? 1.0 : 0.0);  // the bed, and those of nodes

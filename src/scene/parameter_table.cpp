@@ -344,7 +344,7 @@ void add_run(Table& table) {
     table.push_back(
         choice("output.extent", {"flow", "terrain"}, "flow",
                "of rasters and frames. flow: where the terrain goes on far beyond the releases (by more than "
-               "512 cells), the part that columns alone reach; terrain: all of it, which is then held as well"));
+               "512 cells), the part that particles alone reach; terrain: all of it, which is then held as well"));
     table.push_back(number("output.checkpoint_minutes", "min", not_negative, 10.0,
                            "wall time between two checkpoint.h5; 0: one when the run ends or is interrupted"));
     table.push_back(required(make("profile.name", Kind::name, "", "name of the profile's file and figure")));

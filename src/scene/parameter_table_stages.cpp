@@ -78,9 +78,10 @@ void add_barriers(Table& table) {
     table.push_back(
         absent(instead(number("barrier.top", "m", any_number, "elevation of a level top"), "barrier.height"),
                "height or height_field is needed"));
-    table.push_back(number("barrier.friction", "1", between(0.0, 10.0), 0.0,
-                           "Coulomb's friction coefficient between 3D points, or structured columns, and the barrier"));
-    table.push_back(flag("barrier.stuck", false, "3D points and structured columns do not slide along the barrier"));
+    table.push_back(
+        number("barrier.friction", "1", between(0.0, 10.0), 0.0,
+               "Coulomb's friction coefficient between 3D points, or structured particles, and the barrier"));
+    table.push_back(flag("barrier.stuck", false, "3D points and structured particles do not slide along the barrier"));
     Parameter windows =
         make("barrier.windows", Kind::numbers, "s",
              "times over which forces of 3D points are averaged: one to eight, ascending, up to 10 s; the report "
@@ -90,10 +91,10 @@ void add_barriers(Table& table) {
 }
 
 void add_stages(Table& table) {
-    Parameter choice_of_model =
-        make(model, Kind::choice, "",
-             "depth_averaged: columns; solid_flow: 3D points, within the stage's window; columns may come before it, "
-             "after it, or both");
+    Parameter choice_of_model = make(
+        model, Kind::choice, "",
+        "depth_averaged: particles; solid_flow: 3D points, within the stage's window; particles may come before it, "
+        "after it, or both");
     choice_of_model.choices = {"depth_averaged", "solid_flow"};
     table.push_back(required(choice_of_model));
     table.push_back(absent(number("stage.until", "s", positive, "time at which the stage ends and the next begins"),
@@ -104,7 +105,7 @@ void add_stages(Table& table) {
     window.length = 4;
     table.push_back(of_3d(window, "the whole terrain"));
     Parameter closed = make("stage.closed", Kind::words, "",
-                            "sides of the window that points do not cross; columns still come in over them");
+                            "sides of the window that points do not cross; particles still come in over them");
     closed.choices = {"west", "east", "south", "north"};
     closed.may_be_empty = true;
     closed.fallback = std::vector<std::string>{};
@@ -141,10 +142,10 @@ void add_stages(Table& table) {
                   "keep together; up to eight times as many points"),
              model, in_3d));
     table.push_back(with(choice("stage.profile", {"plug", "linear", "parabolic", "bagnold"}, "plug",
-                                "velocity over the depth that columns become points with"),
+                                "velocity over the depth that particles become points with"),
                          model, in_3d));
     table.push_back(with(choice("stage.vertical", {"along-bed", "zero"}, "along-bed",
-                                "vertical velocity that columns become points with; zero: Fois et al. (2025)"),
+                                "vertical velocity that particles become points with; zero: Fois et al. (2025)"),
                          model, in_3d));
 }
 

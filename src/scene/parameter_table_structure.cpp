@@ -15,7 +15,7 @@ void add_structure(Table& table) {
     const auto needed = [&](Parameter parameter) { return with(std::move(parameter), law, any_law, any_law); };
     table.push_back(
         choice(law, {"none", "drucker_prager", "mohr_coulomb"}, "none",
-               "where columns that hold together yield: Drucker and Prager's cone or Mohr and Coulomb's pyramid, "
+               "where particles that hold together yield: Drucker and Prager's cone or Mohr and Coulomb's pyramid, "
                "the stress across the bed being given by the weight"));
     table.push_back(
         needed(number("material.structure.cohesion", "Pa", not_negative, "cohesion of the undamaged structure")));
@@ -37,9 +37,10 @@ void add_structure(Table& table) {
         used(choice("material.structure.earth_pressure", {"rankine", "hydrostatic"}, "rankine",
                     "how grains push sideways: by Ka where they spread or rest and towards Kp where they are "
                     "squeezed, or as the depth-averaged flow does, by the pressure of their weight")));
-    table.push_back(used(number("material.structure.confined_water", "1", {0.0, 1.0, false, true}, 0.0,
-                                "share of the columns' volume that is water within the structure; what breaks sets it "
-                                "free, and needs water.model")));
+    table.push_back(
+        used(number("material.structure.confined_water", "1", {0.0, 1.0, false, true}, 0.0,
+                    "share of the particles' volume that is water within the structure; what breaks sets it "
+                    "free, and needs water.model")));
     table.push_back(
         used(choice("material.structure.damage", {"dilation", "extension", "strain"}, "dilation",
                     "what breaks bonds while the structure yields: plastic dilation in the plane (van den Bout et "

@@ -32,11 +32,11 @@ void add_water(Table& table) {
     const auto viscosity = laws::water_viscosity_keys();
     const auto used = [&](Parameter parameter) { return with(std::move(parameter), model, {"free"}); };
     table.push_back(choice(model, {"none", "free"}, "none",
-                           "free: water on the grid. With material.structure it drags, bears and drains its columns; "
+                           "free: water on the grid. With material.structure it drags, bears and drains its particles; "
                            "without, all that is released and comes in is water"));
     table.push_back(
         used(number("water.share", "1", {0.0, 1.0, false, true}, 0.0,
-                    "share of each release's volume that is free water in its pores; the columns have the rest")));
+                    "share of each release's volume that is free water in its pores; the particles have the rest")));
     table.push_back(absent(used(number("water.level", "m", any_number,
                                        "elevation of a lake at rest at the start, wherever the ground lies lower; it "
                                        "goes on beyond open sides that it meets")),
@@ -79,7 +79,7 @@ void add_water(Table& table) {
     table.push_back(used(of(phases, "block_diameter")));
     table.push_back(
         viscous(flag("water.solid_gradient", false,
-                     "viscous stress of water that slips along a gradient of the columns' share (van den Bout et "
+                     "viscous stress of water that slips along a gradient of the particles' share (van den Bout et "
                      "al. 2021, eq. 30); it takes no energy by itself and may feed slip"),
                 {"clear", "mud"}));
     table.push_back(viscous(of(viscosity, "profile_factor"), {"clear", "mud"}));

@@ -41,16 +41,16 @@ struct Scheme {
     Shape shape = Shape::quadratic;
     Transfer transfer = Transfer::tpic;
     Precision precision = Precision::full;
-    double flip_ratio = 0.99;          ///< share of FLIP in transfer "flip" [1]
-    double cfl = 1.0;                  ///< fraction of a cell per step [1]
-    double filter = 1.0;               ///< strength of the surface filter, 0 = off [1]
-    double wave_shift = 1.0;           ///< by how much points leave two-cell waves, 0 = not at all [1]
-    bool margin = true;                ///< extrapolate the surface at margins from the inside
-    double sub_point_reach = 0.25;     ///< of the four points that carry a column's mass, in domain edges; 0: one point
-    double margin_limit = 1.0;         ///< clamp of the quadratic part of the margin extrapolation [1]
-    double shock_gate = 0.2;           ///< velocity jump, in wave speeds, from which the limiter fades; 0: never [1]
-    double shock_sensor = 0.1;         ///< unlimited jump, in wave speeds, from which the filter is held back; 0: never
-    double viscosity_linear = 0.5;     ///< c1 of the artificial viscosity [1]
+    double flip_ratio = 0.99;       ///< share of FLIP in transfer "flip" [1]
+    double cfl = 1.0;               ///< fraction of a cell per step [1]
+    double filter = 1.0;            ///< strength of the surface filter, 0 = off [1]
+    double wave_shift = 1.0;        ///< by how much points leave two-cell waves, 0 = not at all [1]
+    bool margin = true;             ///< extrapolate the surface at margins from the inside
+    double sub_point_reach = 0.25;  ///< of the four points that carry a particle's mass, in domain edges; 0: one point
+    double margin_limit = 1.0;      ///< clamp of the quadratic part of the margin extrapolation [1]
+    double shock_gate = 0.2;        ///< velocity jump, in wave speeds, from which the limiter fades; 0: never [1]
+    double shock_sensor = 0.1;      ///< unlimited jump, in wave speeds, from which the filter is held back; 0: never
+    double viscosity_linear = 0.5;  ///< c1 of the artificial viscosity [1]
     double viscosity_quadratic = 1.0;  ///< c2 [1]
     double lateral_drag = 0.0;         ///< C of the drag between neighbours of different velocity, 0: none [1]
     double split_length = 0.8;         ///< domain edge that triggers a split, in cells [1]
@@ -100,7 +100,7 @@ struct Inflow {
     double layer = 0.0;             ///< depth of an area's row over all of it [m]
     bool to_right = true;           ///< it flows to the right of the line; otherwise to its left
     double slope = 0.0;             ///< of the bed under the line, down the flow's direction; below 0: it climbs [1]
-    double spacing = 1.0;           ///< of rows, and of columns in them [m]
+    double spacing = 1.0;           ///< of rows, and of particles in them [m]
     std::vector<double> time;       ///< [s]
     std::vector<double> discharge;  ///< [m3/s]
     std::vector<double> speed;      ///< along the map, across the line [m/s]
@@ -148,7 +148,7 @@ struct LateRelease {
 /// becomes 3D points as it crosses the edge. What flows out of it becomes particles.
 struct SolidStage {
     double from = 0.0;                   ///< [s]
-    std::optional<double> until;         ///< from then on all are columns again [s]; nothing: to the end
+    std::optional<double> until;         ///< from then on all are particles again [s]; nothing: to the end
     std::array<Index, 4> window{};       ///< first and last nodes of the terrain's grid in it: i0, j0, i1, j1
     std::array<bool, 4> closed{};        ///< west, south, east, north: points do not cross these sides
     double cell = 1.0;                   ///< of the 3D grid [m]
@@ -186,9 +186,9 @@ struct Barrier {
     std::vector<double> windows;      ///< times over which its force is averaged [s]
 };
 
-/// Solids that hold together: columns are elastic, yield and break (structured/structured_flow.h).
+/// Solids that hold together: particles are elastic, yield and break (structured/structured_flow.h).
 struct Structure {
-    ColumnMaterial material;
+    StructuredMaterial material;
     double cohesion = 0.0;     ///< undamaged [Pa]
     double share = 1.0;        ///< of the solids that have structure, undamaged [1]
     double confined = 0.0;     ///< share of the volume that is water within the structure [1]
@@ -198,8 +198,8 @@ struct Structure {
                                ///< Ka to Kp
 };
 
-/// Free water on the grid, together with the columns of a structure (coupling/two_phase_flow.h) or alone. Releases may
-/// be of it too.
+/// Free water on the grid, together with the particles of a structure (coupling/two_phase_flow.h) or alone. Releases
+/// may be of it too.
 struct WaterPhase {
     /// What is beyond a side of the terrain. It is what Scene::sides says, a wall, nothing that comes in, or water at a
     /// level.

@@ -88,7 +88,7 @@ public:
         barrier.stuck = case_.flag(prefix_ + "stuck");
         remark_buried(barrier);
         barrier.windows = windows();
-        if (case_.word("material.structure.law") == "none") {  // structured columns meet boxes
+        if (case_.word("material.structure.law") == "none") {  // structured particles meet boxes
             remark_thin(barrier.outline);
             remark_thin_wall(barrier);
         }
@@ -156,7 +156,7 @@ private:
                                              place(), beyond, barrier.outline.parts.size()));
     }
 
-    /// Columns see no face thinner than two cells: nodes within half a cell of a polygon stand on it.
+    /// Particles see no face thinner than two cells: nodes within half a cell of a polygon stand on it.
     void remark_thin(const Polygons& outline) const {
         const double cell = scene_.bed.geometry.cell;
         double thinnest = INFINITY;

@@ -117,7 +117,7 @@ void keep_inside(const CaseFile& file, const GisReader& reader, Scene& scene, Ra
     remark_on_outline(file, outline, area_on_pixels(rings, g) / all, scene);
 }
 
-/// 3D points take up no bed: it is firm in their window, and around it as far as they and columns act on each other.
+/// 3D points take up no bed: it is firm in their window, and around it as far as they and particles act on each other.
 void leave_window_out(const SolidStage& stage, Raster& depth, Scene& scene) {
     const GridGeometry& g = depth.geometry;
     const Index reach = 2 + reach_around(stage, g.cell);  // whose ground points may stand on

@@ -41,7 +41,7 @@ void wall_holes(const CaseFile& file, Scene& scene, Problems& problems) {
                      fmt::format("found \"wall\" beside material.structure with {} node{} without elevation inside the "
                                  "terrain",
                                  count, count == 1 ? "" : "s"),
-                     "expected none there, since columns that hold together know walls along x and y only",
+                     "expected none there, since particles that hold together know walls along x and y only",
                      "fill the elevation model (gdal_fillnodata.py), or give boundary.holes = \"open\"");
     scene.hole_top = hole_wall_height(scene);
 }

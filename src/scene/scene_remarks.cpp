@@ -111,7 +111,7 @@ std::string why_without(const Scene& scene, const std::string& field) {
     if (is({"stress"}) && !scene.structure && !scene.solid && std::holds_alternative<rheology::None>(scene.rheology))
         return "material.rheology.law = \"none\" has no stress";
     if (is({"effective_stress"}) && !scene.structure && std::holds_alternative<rheology::None>(scene.rheology))
-        return "material.rheology.law = \"none\" has no stress of columns";
+        return "material.rheology.law = \"none\" has no stress of particles";
     if (is({"damage", "cohesion"}) && !scene.structure)
         return "material.structure.law = \"none\" holds nothing together";
     if (is({"water_depth", "water_velocity"}) && !scene.water) return "there is no free water";

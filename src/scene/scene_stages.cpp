@@ -1,4 +1,4 @@
-// The [[stage]]s of a case: columns first, or from the start 3D points.
+// The [[stage]]s of a case: particles first, or from the start 3D points.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ public:
             if (space < count ? i > space + 1 || (in_3d && i > space) || space > 1 : i > 0)
                 return refuse(i, "found it after the others",
                               "expected depth_averaged, then solid_flow, then depth_averaged, or a part of that",
-                              "remove it; `frana convert` makes points of columns and columns of points besides");
+                              "remove it; `frana convert` makes points of particles and particles of points besides");
             if (i + 1 < count && !given("until"))
                 return refuse(i, "not given until, and another stage follows",
                               "expected the time at which the next stage begins", "add until = ... under [[stage]]");

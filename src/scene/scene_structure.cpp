@@ -26,7 +26,7 @@ public:
         structure.cfl = number("cfl");
         structure.confined = number("confined_water");
         structure.unrolled = case_.flag("terrain.unrolled");
-        ColumnMaterial& m = structure.material;
+        StructuredMaterial& m = structure.material;
         read_numbers(case_, key(""), laws::structured_keys(), m);
         if (given("bulk_modulus")) m.poisson = poisson(m.young);
         if (!structure.hydrostatic) refuse_steep_friction();
@@ -75,9 +75,9 @@ private:
         return 0.3;
     }
 
-    ColumnYield yield() const {
-        if (case_.word(key("law")) == "mohr_coulomb") return ColumnYield::hexagon;
-        return case_.word(key("cone")) == "plane_strain" ? ColumnYield::plane_strain : ColumnYield::compression;
+    StructuredYield yield() const {
+        if (case_.word(key("law")) == "mohr_coulomb") return StructuredYield::hexagon;
+        return case_.word(key("cone")) == "plane_strain" ? StructuredYield::plane_strain : StructuredYield::compression;
     }
     DamageBy damage_by() const {
         const std::string& word = case_.word(key("damage"));
@@ -118,7 +118,7 @@ private:
         problems_.add(case_.table_place(table_of(barrier)),
                       fmt::format("found barrier \"{}\" beside material.structure", barrier.name),
                       "expected an outline that is one rectangle along x and y, the only barrier that structured "
-                      "columns know",
+                      "particles know",
                       "give such an outline, or raise the elevation model there");
     }
 
@@ -148,7 +148,7 @@ private:
         scene_.log.push_back(
             fmt::format("barriers: found {} of {} thinner than {:g} cells of {:.6g} m, the thinnest \"{}\" with {:.4g} "
                         "m; structured "
-                        "columns would go through those, and meet boxes {:.4g} m wide about their middles; give a "
+                        "particles would go through those, and meet boxes {:.4g} m wide about their middles; give a "
                         "smaller grid.cell "
                         "if that is too wide",
                         thin, scene_.barriers.size(), kBoxCells, cell, name, thinnest, least));

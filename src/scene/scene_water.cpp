@@ -115,7 +115,7 @@ void refuse_light_grains(const CaseFile& file, const TwoPhaseMaterial& m, const 
         problems.add(file.place("material.density"),
                      fmt::format("found {:.6g} kg/m3, so that grains have {:.6g}", scene.density, m.solid_density),
                      fmt::format("expected grains denser than water.density = {:.6g}", m.fluid_density),
-                     "give the columns' density, of grains and confined water together");
+                     "give the particles' density, of grains and confined water together");
 }
 
 /// Water finds its level over all of the terrain.

@@ -14,8 +14,8 @@ inline Index reach_around(const SolidStage& stage, double cell) {
     return static_cast<Index>(std::ceil((1.5 * cell + 3.0 * stage.cell) / cell));
 }
 
-/// All nodes that points, and columns that they feel, can give anything to: the window and its rim. Without a stage the
-/// whole terrain.
+/// All nodes that points, and particles that they feel, can give anything to: the window and its rim. Without a stage
+/// the whole terrain.
 inline NodeBox nodes_of_points(const Scene& scene) {
     constexpr Index kStencil = 2;  // of what stands at the outermost of these nodes
     const NodeBox all = NodeBox::all(scene.bed.geometry);

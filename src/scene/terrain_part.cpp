@@ -18,7 +18,7 @@ void take_corners(const Polygons& polygons, std::vector<Vec2>& points) {
         for (const auto& ring : polygon.rings) points.insert(points.end(), ring.begin(), ring.end());
 }
 
-/// Columns alone can go on on a larger part.
+/// Particles alone can go on on a larger part.
 bool may_begin_with_part(const CaseFile& file, const Scene& scene) {
     if (scene.output.whole_terrain || scene.sides != Sides::open) return false;
     for (const char* table : {"stage", "insitu"})

@@ -1,6 +1,6 @@
 #pragma once
 // The part of a large terrain that a run begins with. Particles extend it before they come near its edge
-// (coupling/growing_columns.h). So no result depends on where the terrain ends beyond it.
+// (coupling/growing_particles.h). So no result depends on where the terrain ends beyond it.
 #include <optional>
 
 #include "scene/case_file.h"

@@ -22,8 +22,8 @@ bool ends_stretch(const Clock& now, double stretch) {
 /// Whether a point is no faster than `slowest` [m/s], and a cell of `cell` [m] next to it neither.
 template <class Real>
 bool is_still(const Carried<Real>& held, Index p, double slowest, double cell) {
-    for (const auto* column : {&held.cxx, &held.cxy, &held.cyx, &held.cyy})
-        if (!(cell * std::abs(double{(*column)[p]}) <= slowest)) return false;
+    for (const auto* array : {&held.cxx, &held.cxy, &held.cyx, &held.cyy})
+        if (!(cell * std::abs(double{(*array)[p]}) <= slowest)) return false;
     return std::hypot(double{held.vx[p]}, double{held.vy[p]}) <= slowest;
 }
 
@@ -82,9 +82,9 @@ void Erosion::unmark_raised(const Flow& flow) {
 /// Which points give all that they have, and their tiles.
 bool Erosion::find_settled(Flow& flow) {
     eroding_.assign(static_cast<std::size_t>(flow.active.count()), 0);
-    assign_sparingly(gone_, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
+    assign_sparingly(gone_, static_cast<std::size_t>(flow.particles.count()), std::uint8_t{0});
     make_room(flow);
-    flow.columns.with_real([&](auto real) {
+    flow.particles.with_real([&](auto real) {
         for_each_tile(flow.active, [&](Index n) {
             bool near = false;
             for_each_around(flow.grid, flow.active.tile[n],
@@ -97,16 +97,16 @@ bool Erosion::find_settled(Flow& flow) {
 
 template <class Real>
 bool Erosion::choose_settled(const Flow& flow, Index n) {
-    const Carried<Real>& held = flow.columns.carried<Real>();
+    const Carried<Real>& held = flow.particles.carried<Real>();
     ExchangeSums sums;
     bool any = false;
     for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
         const bool settles = is_still(held, p, slowest_, flow.cell) && lies_on_rest<Real>(flow, p);
-        wanted_[p] = settles ? flow.columns.mass[p] : 0.0;
+        wanted_[p] = settles ? flow.particles.mass[p] : 0.0;
         gone_[static_cast<std::size_t>(p)] = settles;
         any = any || settles;
         if (!settles) continue;
-        const Index k = flow.grid.nearest(flow.columns.x[p], flow.columns.y[p]);
+        const Index k = flow.grid.nearest(flow.particles.x[p], flow.particles.y[p]);
         const double mass = wanted_[p], vx = held.vx[p], vy = held.vy[p];
         const double rise = flow.steep ? vx * flow.bed.slope_x[k] + vy * flow.bed.slope_y[k] : 0.0;
         sums.taken -= mass, sums.px -= mass * vx, sums.py -= mass * vy;
@@ -119,7 +119,7 @@ bool Erosion::choose_settled(const Flow& flow, Index n) {
 /// Whether all nodes that a point deposits on have rested. Mass is on those of its sub-points, momentum on those around itself.
 template <class Real>
 bool Erosion::lies_on_rest(const Flow& flow, Index p) const {
-    const Columns& c = flow.columns;
+    const Particles& c = flow.particles;
     bool rest = true;
     const auto look = [&](const Quadratic& sx, const Quadratic& sy) {
         for (int j = 0; j < 3; ++j)
@@ -141,7 +141,7 @@ void Erosion::give(Flow& flow) {
         for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) given.add(wanted_[p]);
     }
     deposited_.add(given.value());
-    flow.columns.with_real([&](auto real) {
+    flow.particles.with_real([&](auto real) {
         for_each_eroding_in_turn(flow, [&](Index n) { spread<decltype(real)>(flow, n, wanted_, demand_); });
     });
     collect_reach(flow);

@@ -30,13 +30,13 @@ constexpr double kFarther = 2.0;
 double drift_before_carry(const Scheme& scheme) { return scheme.shape == Shape::cubic ? 1.0 : 2.0; }
 
 double least_split_mass(const Scene& scene) {
-    return scene.scheme.split_min_mass * largest_column(scene) * scene.density;
+    return scene.scheme.split_min_mass * largest_particle(scene) * scene.density;
 }
 
 /// Heavier points count as ones that have taken up bed. Few merged points are so heavy.
 double grown_mass(const Scene& scene) {
     constexpr double kGrown = 2.0;  // of the largest at the start
-    return scene.erodible ? kGrown * largest_column(scene) * scene.density : std::numeric_limits<double>::infinity();
+    return scene.erodible ? kGrown * largest_particle(scene) * scene.density : std::numeric_limits<double>::infinity();
 }
 
 bool is_resisted(const Scene& scene) {
@@ -60,27 +60,27 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
       sleeps_(scene.scheme.sleep),
       footprint_depth_(scene.output.footprint_depth) {
     if (scene.erodible || scene.solid) flow_.scheme.cfl = std::min(flow_.scheme.cfl, kMostCflOfExchange);
-    expect(!scene.wider, "on a part of a terrain columns grow it (coupling/growing_columns.h)");
+    expect(!scene.wider, "on a part of a terrain particles grow it (coupling/growing_particles.h)");
     expect(flow_.grid.nx() >= 4 && flow_.grid.ny() >= 4, "the grid needs four nodes in each direction");
     flush_denormals_on_all_threads();
     if (scene.bed_changes()) {
         erosion_.emplace(scene, flow_);
         status_.bed = erosion_->status();
     }
-    flow_.columns.single = scene.scheme.precision == Precision::single;
+    flow_.particles.single = scene.scheme.precision == Precision::single;
     if (!scene.sections.empty()) passages_.emplace(scene.sections, flow_.grid);
     if (!scene.inflows.empty()) feed_.emplace(scene.inflows), supports_.emplace(flow_.grid.size());
     if (!scene.late.empty()) late_.emplace(scene.late, flow_.grid);
     choose_sleep();
     if (start == Start::resumed) return;
-    flow_.columns.with_real([&](auto real) { place<decltype(real)>(scene.particles); });
+    flow_.particles.with_real([&](auto real) { place<decltype(real)>(scene.particles); });
     if (scene.still_surface && scene.scheme.paper_pressure)
         level_points(*scene.still_surface);
     else if (scene.still_surface && scene.scheme.mass_fit && scene.scheme.shape != Shape::linear) {
         // Points that split later would spread over other nodes than those they were fitted on. The fit makes some
         // heavy enough to split.
         const auto split = [&] { return splitter_.split(flow_) > 0; };
-        const auto sort = [&] { sorter_.sort(flow_.columns, flow_.grid, {}, flow_.active); };
+        const auto sort = [&] { sorter_.sort(flow_.particles, flow_.grid, {}, flow_.active); };
         while (split()) sort();
         for (fit_ = fit_masses(flow_, *scene.still_surface); split(); fit_ = fit_masses(flow_, *scene.still_surface))
             sort();
@@ -97,10 +97,10 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     if (late_) enter_late();
 }
 
-/// Seeds become columns behind those that are there: positions in cells, square domains.
+/// Seeds become particles behind those that are there: positions in cells, square domains.
 template <class Real>
 void DepthAveraged::append(const Seeds& seeds, Index first_id) {
-    Columns& c = flow_.columns;
+    Particles& c = flow_.particles;
     Carried<Real>& held = c.carried<Real>();
     const GridGeometry& g = flow_.grid.geometry();
     const Index before = c.count();
@@ -121,11 +121,11 @@ void DepthAveraged::append(const Seeds& seeds, Index first_id) {
 template void DepthAveraged::append<double>(const Seeds&, Index);
 template void DepthAveraged::append<float>(const Seeds&, Index);
 
-/// The columns of a start, sorted by tile.
+/// The particles of a start, sorted by tile.
 template <class Real>
 void DepthAveraged::place(const Seeds& seeds) {
     append<Real>(seeds, 0);
-    Columns& c = flow_.columns;
+    Particles& c = flow_.particles;
     double mass = 0.0;
     for (Index p = 0; p < seeds.count(); ++p) {
         centre_ += c.mass[p] * Vec2(c.x[p], c.y[p]);
@@ -144,7 +144,7 @@ void DepthAveraged::place(const Seeds& seeds) {
 
 /// Depths of a lake's points up to the level from the bilinear bed beneath each, as in the paper.
 void DepthAveraged::level_points(double level) {
-    Columns& c = flow_.columns;
+    Particles& c = flow_.particles;
     for (Index p = 0; p < c.count(); ++p) {
         const Linear sx(c.x[p]), sy(c.y[p]);
         double bed = 0.0;
@@ -170,7 +170,7 @@ void DepthAveraged::advance(double until) {
     const double next_velocity_dt = 0.5 * (dt + longest_step());
     const bool rows = feed_ && feed_->due(status_.after(dt, until));
     // Rows wait until points are sorted anyway. A sort of its own for each would cost a fifth of a step.
-    const bool adapts = due || drift_ > drift_before_carry(flow_.scheme) || (rows && flow_.columns.count() == 0);
+    const bool adapts = due || drift_ > drift_before_carry(flow_.scheme) || (rows && flow_.particles.count() == 0);
     const bool fed = rows && adapts;
     const bool settles = erosion_ && erosion_->deposits(), erodes = erosion_ && exchange_is_due(dt, until, adapts);
     const bool apart = adapts || settles || erodes;
@@ -183,7 +183,7 @@ void DepthAveraged::advance(double until) {
     accumulate_points(points);
     status_.tick(dt, until);
     // Dropped, not sorted: nodes have been cleared for the present tiles, and stay so until the next deposit.
-    if (points.left_count > 0) timed_("sort", [&] { sorter_.drop(flow_.columns, transfer_->gone(), flow_.active); });
+    if (points.left_count > 0) timed_("sort", [&] { sorter_.drop(flow_.particles, transfer_->gone(), flow_.active); });
     if (settles) timed_("erosion", [&] { settle(); });
     if (adapts) adapt_points(due, fed);
     if (erodes) timed_("erosion", [&] { erode(dt, until - status_.time); });
@@ -239,7 +239,7 @@ void DepthAveraged::arrive(const PointSums& points) {
     status_.max_speed = speeds.fastest, status_.mean_speed = speeds.mean;
 
     stress_power_ = points.stress_power;
-    status_.particles = flow_.columns.count();
+    status_.particles = flow_.particles.count();
     status_.mass = points.mass;
     status_.momentum = {points.px, points.py};
     if (flow_.walls) close_by_walls(status_);
@@ -272,10 +272,10 @@ void DepthAveraged::adapt_points(bool due, bool fed) {
     Index born = 0;
     if (has_domains && due) born = timed_("split", [&] { return split_points(); });
     if (born == 0 && drift_ <= kDriftLimit && !due && !fed) return;
-    timed_("order", [&] { sorter_.plan(flow_.columns, flow_.grid, none, flow_.active); });
+    timed_("order", [&] { sorter_.plan(flow_.particles, flow_.grid, none, flow_.active); });
     if (merger_ && due && timed_("merge", [&] { return merge_points(); }))
         timed_("order", [&] { sorter_.leave_out(transfer_->gone(), flow_.active); });
-    timed_("sort", [&] { sorter_.carry_out(flow_.columns); });
+    timed_("sort", [&] { sorter_.carry_out(flow_.particles); });
     drift_ = 0.0;
 }
 
@@ -306,7 +306,7 @@ Index DepthAveraged::split_points() {
     const Index born = splitter_.split(flow_);
     end_of_births_ = splitter_.next_id();
     if (!passages_) return born;
-    if (born > 0) passages_->count_halved(flow_, flow_.columns.count() - born, splitter_.parents());
+    if (born > 0) passages_->count_halved(flow_, flow_.particles.count() - born, splitter_.parents());
     if (!births_wanted_) splitter_.forget_parents();
     return born;
 }
@@ -340,7 +340,7 @@ double DepthAveraged::share_of_ordinary_step() const {
 double DepthAveraged::step_length(double until) const {
     // Where nothing is yet, the clock goes on to what comes first. What is due already comes in with this step: all that there
     // was has just become bed.
-    const bool empty = feed_ && flow_.columns.count() == 0;
+    const bool empty = feed_ && flow_.particles.count() == 0;
     if (empty && !feed_->over() && !feed_->due(status_.time)) until = std::min(until, feed_->next());
     return status_.step_towards(until, longest_step());
 }
@@ -380,8 +380,10 @@ void DepthAveraged::require_finite(const PointSums& sums) const {
         "step {}, t = {:.6g} s, dt = {:.3g} s: the point at ({:.6g}, {:.6g}) has depth {:.3g} m and would move more "
         "than "
         "four cells in one step or is not finite; reduce scheme.cfl (now {}) or look at the terrain there",
-        status_.step, status_.time, status_.dt, g.x0 + flow_.columns.x[p] * g.cell, g.y0 + flow_.columns.y[p] * g.cell,
-        flow_.columns.with_real([&](auto real) { return double{flow_.columns.carried<decltype(real)>().depth[p]}; }),
+        status_.step, status_.time, status_.dt, g.x0 + flow_.particles.x[p] * g.cell,
+        g.y0 + flow_.particles.y[p] * g.cell, flow_.particles.with_real([&](auto real) {
+            return double{flow_.particles.carried<decltype(real)>().depth[p]};
+        }),
         flow_.scheme.cfl));
 }
 
@@ -393,7 +395,7 @@ std::vector<double> DepthAveraged::passed() const {
 }
 
 Index DepthAveraged::particle_bytes() const {
-    return flow_.columns.bytes() + sorter_.bytes() + allocated(transfer_->gone()) + (merger_ ? merger_->bytes() : 0);
+    return flow_.particles.bytes() + sorter_.bytes() + allocated(transfer_->gone()) + (merger_ ? merger_->bytes() : 0);
 }
 
 namespace {

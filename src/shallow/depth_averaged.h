@@ -46,46 +46,46 @@ public:
     Extras extras() const override;
     std::vector<std::string> remarks() const override;
     void serialize(Archive& archive) override;
-    std::string why_not_add(const Seeds& columns) const override;
-    void add(const Seeds& columns) override;
+    std::string why_not_add(const Seeds& particles) const override;
+    void add(const Seeds& particles) override;
 
-    /// From now on columns leave at the nodes marked (1; row after row from the south) and are noted. With `leave_now`
-    /// those that stand there leave too, and are not noted.
+    /// From now on particles leave at the nodes marked (1; row after row from the south) and are noted. With
+    /// `leave_now` those that stand there leave too, and are not noted.
     void open_exits(const std::vector<std::uint8_t>& marks, bool leave_now);
-    /// The columns that left so since the last call, by id.
+    /// The particles that left so since the last call, by id.
     std::vector<Departed> take_departed();
 
     /// Velocities, half a step behind, come to the present. As at a start the next step is half a step of forces. What
     /// has been deposited is of before: take_in() has to follow.
     void catch_up();
-    /// Nothing leaves any more at the nodes that open_exits() marked, and columns may sleep again.
+    /// Nothing leaves any more at the nodes that open_exits() marked, and particles may sleep again.
     void close_exits();
-    /// More columns, between two steps at `time` [s], the columns' own unless there are none. `gradient` is of the
+    /// More particles, between two steps at `time` [s], the particles' own unless there are none. `gradient` is of the
     /// velocity of each, dv_k/dx_l at (k, l) [1/s]. They are recorded as what did not leave after all: mass, momentum
     /// and energy, which is returned [J].
     double take_in(const Seeds& seeds, const std::vector<Mat2>& gradient, double time);
-    /// Whether a column may stand at a place of the map: on ground, and not where columns leave.
+    /// Whether a particle may stand at a place of the map: on ground, and not where particles leave.
     bool may_stand(double x, double y) const;
 
     /// For the next step: depth of other material on the nodes [m] (row after row from the south). It counts as depth
-    /// of the columns everywhere, but for their mass and motion. They are deposited once more, with it. Nothing sleeps
-    /// any more. Pressure on points (paper preset) does not feel it.
+    /// of the particles everywhere, but for their mass and motion. They are deposited once more, with it. Nothing
+    /// sleeps any more. Pressure on points (paper preset) does not feel it.
     void set_adjacent(const std::vector<double>& depth);
 
     /// From now on frames show these nodes only.
     void show(const NodeBox& box) { shown_ = box; }
     /// The nodes of all tiles on the work list. Some may lie beyond the grid.
     NodeBox worked() const;
-    /// The columns, peaks and sums of a run on a part of this grid, which gives them up. This one was made for that
+    /// The particles, peaks and sums of a run on a part of this grid, which gives them up. This one was made for that
     /// (Start::resumed). Its node (0, 0) is (east, north) here.
     void take_over(DepthAveraged& from, Index east, Index north);
 
-    /// From now on columns that are split are noted.
+    /// From now on particles that are split are noted.
     void note_parents() {
         splitter_.note_parents();
         births_wanted_ = true;
     }
-    /// A column that another one was split into, and that one, by id.
+    /// A particle that another one was split into, and that one, by id.
     struct Birth {
         Index child, parent;
     };

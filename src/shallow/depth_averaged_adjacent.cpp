@@ -1,4 +1,4 @@
-// Other material on the nodes of a depth-averaged run: columns feel how high it stands, not its motion.
+// Other material on the nodes of a depth-averaged run: particles feel how high it stands, not its motion.
 #include "base/error.h"
 #include "shallow/depth_averaged.h"
 #include "shallow/sides.h"
@@ -8,7 +8,7 @@ namespace frana {
 void DepthAveraged::set_adjacent(const std::vector<double>& depth) {
     expect(static_cast<Index>(depth.size()) == flow_.grid.geometry().size(),
            "every node of the grid has a depth of other material");
-    flow_.scheme.sleep = false;  // what is adjacent to sleeping columns may stir them
+    flow_.scheme.sleep = false;  // what is adjacent to sleeping particles may stir them
     for (const Index tile : flow_.active.tile) flow_.active.quiet[tile] = 0;
     timed_("ghost particles", [&] {
         stress_power_ = transfer_->deposit(flow_, 0.5 * (status_.dt + longest_step())).stress_power;

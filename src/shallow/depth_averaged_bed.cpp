@@ -8,7 +8,7 @@ void DepthAveraged::detrain(double dt) {
     const ExchangeSums sums = erosion_->detrain(flow_, dt);
     if (!(sums.taken < 0.0)) return;
     account(of_bed(sums));
-    if (erosion_->any_gone()) sorter_.drop(flow_.columns, erosion_->gone(), flow_.active);
+    if (erosion_->any_gone()) sorter_.drop(flow_.particles, erosion_->gone(), flow_.active);
     status_.bed = erosion_->status();
 }
 
@@ -17,7 +17,7 @@ void DepthAveraged::settle() {
     const std::optional<ExchangeSums> sums = erosion_->settle(flow_, status_);
     if (!sums) return;
     account(of_bed(*sums));
-    sorter_.drop(flow_.columns, erosion_->gone(), flow_.active);
+    sorter_.drop(flow_.particles, erosion_->gone(), flow_.active);
     status_.bed = erosion_->status();
 }
 

@@ -1,4 +1,4 @@
-// Where a depth-averaged run gives its material to another model, and what it tells of its columns.
+// Where a depth-averaged run gives its material to another model, and what it tells of its particles.
 #include <fmt/core.h>
 #include <omp.h>
 
@@ -16,10 +16,10 @@ namespace {
 /// Of point p above node k [J].
 template <class Real>
 double kinetic_of(const Flow& flow, Index p, Index k) {
-    const auto& held = flow.columns.carried<Real>();
+    const auto& held = flow.particles.carried<Real>();
     const double vx = held.vx[p], vy = held.vy[p];
     const double vz = flow.steep ? vx * flow.bed.slope_x[k] + vy * flow.bed.slope_y[k] : 0.0;
-    return 0.5 * flow.columns.mass[p] * (vx * vx + vy * vy + vz * vz);
+    return 0.5 * flow.particles.mass[p] * (vx * vx + vy * vy + vz * vz);
 }
 
 /// What tiles that sleep deposited stays: not next to what comes or goes.
@@ -42,10 +42,10 @@ void DepthAveraged::open_exits(const std::vector<std::uint8_t>& marks, bool leav
 void DepthAveraged::catch_up() {
     if (status_.dt == 0.0) return;
     const Frame now = frame();
-    flow_.columns.with_real([&](auto real) {
+    flow_.particles.with_real([&](auto real) {
         using Real = decltype(real);
-        Carried<Real>& held = flow_.columns.carried<Real>();
-        for (Index p = 0; p < flow_.columns.count(); ++p)
+        Carried<Real>& held = flow_.particles.carried<Real>();
+        for (Index p = 0; p < flow_.particles.count(); ++p)
             held.vx[p] = static_cast<Real>(probe_.vx[p]), held.vy[p] = static_cast<Real>(probe_.vy[p]);
     });
     status_ = now.status;
@@ -71,10 +71,10 @@ bool DepthAveraged::may_stand(double x, double y) const {
 }
 
 double DepthAveraged::take_in(const Seeds& seeds, const std::vector<Mat2>& gradient, double time) {
-    Columns& c = flow_.columns;
+    Particles& c = flow_.particles;
     const Index before = c.count();
-    expect(gradient.size() == seeds.x.size(), "columns that come in have a gradient each");
-    expect(before == 0 || time == status_.time, "columns that come in are at the time of the others");
+    expect(gradient.size() == seeds.x.size(), "particles that come in have a gradient each");
+    expect(before == 0 || time == status_.time, "particles that come in are at the time of the others");
     if (before == 0) status_.time = time, status_.dt = 0.0;
     wake_all(flow_);
     PointSums came;
@@ -105,10 +105,10 @@ double DepthAveraged::take_in(const Seeds& seeds, const std::vector<Mat2>& gradi
     return came.left_energy;
 }
 
-/// Rows of inflows that are complete now, behind the columns that are there. A sort and a deposit have to follow.
+/// Rows of inflows that are complete now, behind the particles that are there. A sort and a deposit have to follow.
 void DepthAveraged::take_rows() {
-    const Feed::Columns& rows = feed_->take(status_.time);
-    Columns& c = flow_.columns;
+    const Feed::Particles& rows = feed_->take(status_.time);
+    Particles& c = flow_.particles;
     const Index before = c.count();
     if (erosion_ && before == 0) erosion_->start_anew(true);
     const GridGeometry& g = flow_.grid.geometry();
@@ -158,7 +158,7 @@ void DepthAveraged::enter_late() {
 /// Returns the kinetic energy that it brings [J].
 template <class Real>
 double DepthAveraged::place_late(const LateRelease& release, PointSums& came) {
-    Columns& c = flow_.columns;
+    Particles& c = flow_.particles;
     const Index before = c.count();
     append<Real>(release.seeds, release.first_id);
     Carried<Real>& held = c.carried<Real>();
@@ -178,8 +178,8 @@ double DepthAveraged::place_late(const LateRelease& release, PointSums& came) {
 /// All that moves is brought to the present. So the next step is as at a start for all of it. Potential energy comes in
 /// as the nodes count it, with what a flow on a falling bed loses: the release lifts it as far again.
 void DepthAveraged::take_late(const std::vector<const LateRelease*>& releases) {
-    if (flow_.columns.count() > 0) catch_up();
-    if (erosion_) erosion_->start_anew(flow_.columns.count() == 0);
+    if (flow_.particles.count() > 0) catch_up();
+    if (erosion_) erosion_->start_anew(flow_.particles.count() == 0);
     status_.dt = 0.0, since_split_ = 0.0;
     wake_all(flow_);
     const double potential = status_.potential, signal = signal_;
@@ -187,13 +187,13 @@ void DepthAveraged::take_late(const std::vector<const LateRelease*>& releases) {
         if (!release->scar.empty()) timed_("erosion", [&] { erosion_->cut(flow_, release->scar); });
     PointSums came;
     double kinetic = 0.0;
-    flow_.columns.with_real([&](auto real) {
+    flow_.particles.with_real([&](auto real) {
         for (const LateRelease* release : releases) kinetic += place_late<decltype(real)>(*release, came);
     });
     FlowLedger in = carried_in(came);
     status_.kinetic += kinetic;  // of nodes, and to the next grid update only
     signal_ = status_.max_speed_on_map;
-    sorter_.sort(flow_.columns, flow_.grid, {}, flow_.active);
+    sorter_.sort(flow_.particles, flow_.grid, {}, flow_.active);
     drift_ = 0.0;
     arrive(timed_("deposit", [&] { return transfer_->deposit(flow_, 0.5 * longest_step()); }));
     signal_ = std::max(signal, status_.max_speed_on_map + std::sqrt(flow_.gravity * status_.max_depth));
@@ -201,18 +201,18 @@ void DepthAveraged::take_late(const std::vector<const LateRelease*>& releases) {
     account(in);
 }
 
-std::string DepthAveraged::why_not_add(const Seeds& columns) const {
-    for (Index n = 0; n < columns.count(); ++n)
-        if (!may_stand(columns.x[n], columns.y[n]))
+std::string DepthAveraged::why_not_add(const Seeds& particles) const {
+    for (Index n = 0; n < particles.count(); ++n)
+        if (!may_stand(particles.x[n], particles.y[n]))
             return fmt::format(
                 "found the place ({:.10g}, {:.10g}); expected one on the terrain that the run holds now, and "
                 "not where material leaves it; choose another one, or a larger terrain.window",
-                columns.x[n], columns.y[n]);
+                particles.x[n], particles.y[n]);
     return "";
 }
 
-void DepthAveraged::add(const Seeds& columns) {
-    added_.append(columns, 0, columns.count());
+void DepthAveraged::add(const Seeds& particles) {
+    added_.append(particles, 0, particles.count());
     if (!aside_) enter_added();
 }
 
@@ -230,7 +230,7 @@ void DepthAveraged::enter_added() {
 /// Drops the points at exits and deposits the others again, recording what left as at other exits.
 void DepthAveraged::leave_at_exits() {
     wake_all(flow_);
-    const Columns& c = flow_.columns;
+    const Particles& c = flow_.particles;
     std::vector<std::uint8_t> gone(static_cast<std::size_t>(c.count()), 0);
     PointSums left;
     double kinetic = 0.0;
@@ -238,14 +238,14 @@ void DepthAveraged::leave_at_exits() {
         const Index k = flow_.grid.nearest(c.x[p], c.y[p]);
         if (!leads_out(flow_.bed.exit[k])) continue;
         gone[static_cast<std::size_t>(p)] = 1;
-        flow_.columns.with_real([&](auto real) {
+        flow_.particles.with_real([&](auto real) {
             kinetic += kinetic_of<decltype(real)>(flow_, p, k);
             leave<decltype(real)>(flow_, p, k, left);
         });
     }
     account(carried_out(left));
     status_.kinetic = std::max(0.0, status_.kinetic - kinetic);  // of nodes, and to the next grid update only
-    sorter_.drop(flow_.columns, gone, flow_.active);
+    sorter_.drop(flow_.particles, gone, flow_.active);
     arrive(transfer_->deposit(flow_, 0.5 * (status_.dt + longest_step())));
 }
 

@@ -73,9 +73,9 @@ Status DepthAveraged::catch_up_on_copy() {
     set_totals(until_frame_.add(of_grid_update(sums, 0.5 * status_.dt * stress_power_)), now);
     now.momentum = {0.0, 0.0};
     double speed2 = 0.0;
-    for (Index p = 0; p < flow_.columns.count(); ++p) {
-        now.momentum[0] += flow_.columns.mass[p] * probe_.vx[p];
-        now.momentum[1] += flow_.columns.mass[p] * probe_.vy[p];
+    for (Index p = 0; p < flow_.particles.count(); ++p) {
+        now.momentum[0] += flow_.particles.mass[p] * probe_.vx[p];
+        now.momentum[1] += flow_.particles.mass[p] * probe_.vy[p];
         speed2 = std::max(speed2, probe_.vx[p] * probe_.vx[p] + probe_.vy[p] * probe_.vy[p]);
     }
     now.max_speed_on_map = std::sqrt(speed2);
@@ -147,7 +147,7 @@ double DepthAveraged::fastest_node() const {
 }
 
 void DepthAveraged::particle_fields(Frame& frame) {
-    const Columns& c = flow_.columns;
+    const Particles& c = flow_.particles;
     const Index count = c.count();
     const GridGeometry& g = flow_.grid.geometry();
     ParticleFields fields(store_, frame.particles, count);
@@ -204,7 +204,7 @@ double DepthAveraged::node_fields(Frame& frame) {
 /// Stress of the rheology at the points and, mass-weighted, on the nodes. effective_stress adds the depth-averaged
 /// pressure: sigma - rho g h / 2 (Fois et al. 2024, before eq. 10).
 void DepthAveraged::stress_fields(Frame& frame) {
-    const Index count = flow_.columns.count(), nodes = shown_.nx * shown_.ny;
+    const Index count = flow_.particles.count(), nodes = shown_.nx * shown_.ny;
     double* at_points = store_.raw(frame.particles, "stress", "Pa", 3, count);
     double* effective = store_.raw(frame.particles, "effective_stress", "Pa", 3, count);
     double* at_nodes = store_.zeros(frame.nodes, "stress", "Pa", 3, nodes);
@@ -231,7 +231,7 @@ void DepthAveraged::stress_fields(Frame& frame) {
 template <class Law>
 void DepthAveraged::stress_at_points(const Law& law, double* stresses) const {
     if constexpr (!std::is_same_v<Law, rheology::None>) {
-        const Columns& c = flow_.columns;
+        const Particles& c = flow_.particles;
         const Index count = c.count();
         const double velocity_dt = status_.dt > 0.0 ? status_.dt : longest_step();
         const double cap = most_viscosity(flow_, velocity_dt);
@@ -239,7 +239,7 @@ void DepthAveraged::stress_at_points(const Law& law, double* stresses) const {
 #pragma omp parallel for schedule(static)
             for (Index p = 0; p < count; p += 4) {
                 const int lanes = static_cast<int>(std::min<Index>(4, count - p));
-                const auto four = [&](const auto& column) { return load(&column[p], lanes); };
+                const auto four = [&](const auto& array) { return load(&array[p], lanes); };
                 const Double4 vx = four(probe_.vx), vy = four(probe_.vy), depth = four(probe_.depth), none = {};
                 const Mask4 wet = depth > flow_.dry_depth();
                 const PlaneOf<Double4> rate{four(probe_.cxx), four(probe_.cyy),
@@ -262,7 +262,7 @@ void DepthAveraged::stress_on_nodes(const double* stresses) {
     if (!stress_sums_) stress_sums_ = LazyArray<StressSum>(flow_.grid.size());
     for (const Index tile : flow_.active.work)
         for_each_node_of(flow_.grid, tile, kAllGroups, [&](Index k, Index, Index) { stress_sums_[k] = {}; });
-    const Columns& c = flow_.columns;
+    const Particles& c = flow_.particles;
     for_each_tile_in_turn(flow_.active, [&](Index n) {
         for (Index p = flow_.active.begin[n]; p < flow_.active.begin[n + 1]; ++p) {
             const Quadratic sx(c.x[p]), sy(c.y[p]);

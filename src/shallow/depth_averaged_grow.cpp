@@ -32,8 +32,8 @@ NodeBox DepthAveraged::worked() const {
 }
 
 void DepthAveraged::take_over(DepthAveraged& from, Index east, Index north) {
-    Columns& c = flow_.columns;
-    c = std::move(from.flow_.columns);
+    Particles& c = flow_.particles;
+    c = std::move(from.flow_.particles);
     for (Index p = 0; p < c.count(); ++p) c.x[p] += static_cast<double>(east), c.y[p] += static_cast<double>(north);
     copy_peaks(from.flow_.grid, from.peaks_, flow_.grid, peaks_, east, north);
     splitter_ = std::move(from.splitter_), merger_ = std::move(from.merger_), timed_ = std::move(from.timed_);

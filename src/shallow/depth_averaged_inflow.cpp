@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kSupport = 4.0;  ///< behind the line, beyond the reach of passes over nodes [cells]
 
-/// Nodes that a column's sub-points may touch, of any shape.
+/// Nodes that a particle's sub-points may touch, of any shape.
 struct Touched {
     Index i0, i1, j0, j1;  ///< first and last
     /// Of a place and half the way between sub-points [cells].
@@ -34,15 +34,15 @@ bool all_in_work(const Flow& flow, const Touched& nodes) {
     return true;
 }
 
-void spread(Flow& flow, const ColumnAt& column, const Edges& edges) {
+void spread(Flow& flow, const MassAt& particle, const Edges& edges) {
     double* const into = flow.nodes.column_mass.data();
     switch (flow.scheme.shape) {
         case Shape::linear:
-            return spread_column<Linear>(flow, into, column, edges);
+            return spread_particle<Linear>(flow, into, particle, edges);
         case Shape::quadratic:
-            return spread_column<Quadratic>(flow, into, column, edges);
+            return spread_particle<Quadratic>(flow, into, particle, edges);
         case Shape::cubic:
-            return spread_column<Cubic>(flow, into, column, edges);
+            return spread_particle<Cubic>(flow, into, particle, edges);
     }
 }
 
@@ -63,7 +63,7 @@ double potential(const Flow& flow, Index k, double mass) {
 
 }  // namespace
 
-/// Next to what may come in nothing sleeps: its nodes have depth that is of no column.
+/// Next to what may come in nothing sleeps: its nodes have depth that is of no particle.
 void DepthAveraged::choose_sleep() { flow_.scheme.sleep = sleeps_ && !(feed_ && !feed_->over()); }
 
 /// Before walls fold the deposit and the surface is made. Its nodes count as in reach.
@@ -78,24 +78,24 @@ void DepthAveraged::support_inflows() {
             const double x = (behind.x[n] - g.x0) / g.cell, y = (behind.y[n] - g.y0) / g.cell;
             const double edge = behind.size[n] / g.cell;
             const Touched nodes(x, y, edge * flow_.scheme.sub_point_reach);
-            // otherwise no column is near
-            if (all_in_work(flow_, nodes)) body(ColumnAt{x, y, behind.volume[n] * flow_.density}, edge, nodes);
+            // otherwise no particle is near
+            if (all_in_work(flow_, nodes)) body(MassAt{x, y, behind.volume[n] * flow_.density}, edge, nodes);
         }
     };
-    each([&](const ColumnAt&, double, const Touched& nodes) {
+    each([&](const MassAt&, double, const Touched& nodes) {
         for (Index j = nodes.j0; j <= nodes.j1; ++j)
             supports_->add(flow_.grid.at(nodes.i0, j), nodes.i1 - nodes.i0 + 1);
     });
     reach_supports();
     if (flow_.walls)
-        each([&](const ColumnAt&, double, const Touched& nodes) {
+        each([&](const MassAt&, double, const Touched& nodes) {
             if (nodes.i0 >= 0 && nodes.j0 >= 0 && nodes.i1 < flow_.grid.nx() && nodes.j1 < flow_.grid.ny()) return;
             nodes.for_each(
                 [&](Index i, Index j) { for_each_image(flow_, i, j, [&](Index image) { supports_->add(image); }); });
         });
     if (supports_->number() == 0) return;
     supports_->for_each([&](Index k) { supported_.push_back({k, flow_.nodes.column_mass[k]}); });
-    each([&](const ColumnAt& column, double edge, const Touched&) { spread(flow_, column, {edge, 0.0, 0.0, edge}); });
+    each([&](const MassAt& particle, double edge, const Touched&) { spread(flow_, particle, {edge, 0.0, 0.0, edge}); });
     activate_all(flow_);
 }
 

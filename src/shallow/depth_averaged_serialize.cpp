@@ -12,8 +12,8 @@
 namespace frana {
 namespace {
 
-constexpr const char* kColumnNames[] = {"x",   "y",   "mass", "vx",  "vy",  "cxx", "cxy",
-                                        "cyx", "cyy", "r1x",  "r1y", "r2x", "r2y", "depth"};
+constexpr const char* kArrayNames[] = {"x",   "y",   "mass", "vx",  "vy",  "cxx", "cxy",
+                                       "cyx", "cyy", "r1x",  "r1y", "r2x", "r2y", "depth"};
 
 }  // namespace
 
@@ -35,11 +35,11 @@ void DepthAveraged::serialize(Archive& archive) {
 }
 
 void DepthAveraged::serialize_points(Archive& archive) {
-    frana::serialize_points(archive, flow_.columns, [](std::size_t n) { return kColumnNames[n]; });
+    frana::serialize_points(archive, flow_.particles, [](std::size_t n) { return kArrayNames[n]; });
     const Archive::Part part(archive, "points");
     serialize_tiles(archive, flow_.active);
     if (!archive.loading()) return;
-    require_whole(flow_.active, flow_.grid.tiles(), flow_.columns.count());
+    require_whole(flow_.active, flow_.grid.tiles(), flow_.particles.count());
     sorter_.list_tiles(flow_.grid, flow_.active);
     for (const Index tile : flow_.active.tile) flow_.active.quiet[tile] = 0;
 }
@@ -93,7 +93,7 @@ void DepthAveraged::serialize_support(Archive& archive) {
     archive.array("node", nodes);
     archive.array("own", own);
     if (!archive.loading()) return;
-    if (nodes.size() != own.size()) throw misfit("its columns differ in length");
+    if (nodes.size() != own.size()) throw misfit("its arrays differ in length");
     supports_->clear();
     for (const Index k : nodes) {
         if (k < 0 || k >= flow_.grid.size()) throw misfit("its nodes are not those of the grid");

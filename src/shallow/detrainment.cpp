@@ -10,7 +10,8 @@
 namespace frana {
 namespace {
 
-/// Of the largest column: lighter ones are not left. In a thin flow each step takes a share of what there is, without end.
+/// Of the largest particle: lighter ones are not left. In a thin flow each step takes a share of what there is, without
+/// end.
 constexpr double kLeastShare = 1e-6;
 
 }  // namespace
@@ -19,7 +20,7 @@ void Erosion::prepare_forest(const Scene& scene, const Flow& flow) {
     if (!scene.forest) return;
     const TileGrid& grid = flow.grid;
     forest_ = scene.forest->law;
-    least_mass_ = kLeastShare * scene.density * largest_column(scene);
+    least_mass_ = kLeastShare * scene.density * largest_particle(scene);
     trees_ = LazyArray<double>(grid.size());
     wooded_.assign(static_cast<std::size_t>(grid.tiles()), 0);
     for (Index j = 0; j < grid.ny(); ++j)
@@ -38,8 +39,8 @@ ExchangeSums Erosion::detrain(Flow& flow, double dt) {
     any_gone_ = false;
     if (!trees_ || !(dt > 0.0) || !choose_wooded(flow)) return all;
     make_room(flow);
-    assign_sparingly(gone_, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
-    flow.columns.with_real(
+    assign_sparingly(gone_, static_cast<std::size_t>(flow.particles.count()), std::uint8_t{0});
+    flow.particles.with_real(
         [&](auto real) { for_each_eroding(flow, [&](Index n) { lose<decltype(real)>(flow, n, dt); }); });
     CompensatedSum taken, px, py, lost;
     for (const ExchangeSums& of : sums_) taken.add(of.taken), px.add(of.px), py.add(of.py), lost.add(of.lost);
@@ -66,7 +67,7 @@ bool Erosion::choose_wooded(const Flow& flow) {
 /// THEORY (80): velocities are those of the middle of the step, depths those of its start.
 template <class Real>
 void Erosion::lose(Flow& flow, Index n, double dt) {
-    Columns& c = flow.columns;
+    Particles& c = flow.particles;
     const Carried<Real>& held = c.carried<Real>();
     ExchangeSums sums;
     for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {

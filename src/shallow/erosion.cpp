@@ -276,7 +276,8 @@ ExchangeSums Erosion::exchange(Flow& flow, double dt, double left) {
     find_demand(flow, stretch);
     scarce_ = find_shares(flow);
     if (scarce_) share_out(flow);
-    flow.columns.with_real([&](auto real) { for_each_eroding(flow, [&](Index n) { grow<decltype(real)>(flow, n); }); });
+    flow.particles.with_real(
+        [&](auto real) { for_each_eroding(flow, [&](Index n) { grow<decltype(real)>(flow, n); }); });
     lower(flow);
     CompensatedSum taken;
     double gained = 0.0;
@@ -318,15 +319,15 @@ bool Erosion::choose(const Flow& flow) {
 }
 
 void Erosion::make_room(const Flow& flow) {
-    const std::size_t count = static_cast<std::size_t>(flow.columns.count());
-    for (Array* column : {&wanted_, &missed_, &speed_, &braked_, &from_x_, &from_y_}) resize_sparingly(*column, count);
+    const std::size_t count = static_cast<std::size_t>(flow.particles.count());
+    for (Array* array : {&wanted_, &missed_, &speed_, &braked_, &from_x_, &from_y_}) resize_sparingly(*array, count);
     const std::size_t tiles = static_cast<std::size_t>(flow.active.count());
     sums_.assign(tiles, {}), spread_to_.resize(tiles);
 }
 
 /// THEORY (72): the demand of each point, and their sum on the nodes.
 void Erosion::find_demand(Flow& flow, const Stretch& stretch) {
-    flow.columns.with_real([&](auto real) {
+    flow.particles.with_real([&](auto real) {
         using Real = decltype(real);
         for_each_eroding_in_turn(flow, [&](Index n) {
             const auto demand = [&](const auto& law, const auto& friction) {
@@ -383,7 +384,7 @@ Double4 strengths(const Law& law, const BedStateOf<Double4>& bed, Double4 speed,
 /// where all four were.
 [[gnu::always_inline]] inline Double4 Erosion::set_back(Flow& flow, Index p, int lanes, Mask4 chosen, Double4 dx,
                                                         Double4 dy) {
-    Columns& c = flow.columns;
+    Particles& c = flow.particles;
     const Double4 x0 = load(&c.x[p], lanes), y0 = load(&c.y[p], lanes), none = {};
     const double per_cell = 1.0 / flow.cell;
     store(&from_x_[p], x0, lanes), store(&from_y_[p], y0, lanes);
@@ -401,7 +402,7 @@ Double4 strengths(const Law& law, const BedStateOf<Double4>& bed, Double4 speed,
 /// way and the law are taken, half of the gain shares it. Such points have come too far, and are set back.
 template <class Law, class Friction, class Real, bool kFresh>
 void Erosion::demand_of_tile(Flow& flow, Index n, const Stretch& stretch, const Law& law, const Friction& friction) {
-    Columns& c = flow.columns;
+    Particles& c = flow.particles;
     const double dt = stretch.whole;
     const Carried<Real>& held = c.carried<Real>();
     constexpr bool kFeels = !std::is_same_v<Friction, Unfelt>;
@@ -455,7 +456,7 @@ void Erosion::demand_of_tile(Flow& flow, Index n, const Stretch& stretch, const 
 /// A point that gets the share `got` < 1 of its demand was set back too far by the rest. Where it gets nothing it is
 /// where it was, to the last bit: an empty bed changes nothing.
 void Erosion::return_part(Flow& flow, Index p, double got) const {
-    Columns& c = flow.columns;
+    Particles& c = flow.particles;
     c.x[p] = from_x_[p] + got * (c.x[p] - from_x_[p]);
     c.y[p] = from_y_[p] + got * (c.y[p] - from_y_[p]);
 }
@@ -476,7 +477,7 @@ namespace {
 /// The window of four points, not next to the grid's sides, in `room`; nullptr where sub-points are too far away.
 template <class Real>
 const WindowOfFour* window_of(const Flow& flow, Index p, int lanes, WindowOfFour& room) {
-    const Columns& c = flow.columns;
+    const Particles& c = flow.particles;
     const Carried<Real>& held = c.carried<Real>();
     const Domains r{load(&held.r1x[p], lanes), load(&held.r1y[p], lanes), load(&held.r2x[p], lanes),
                     load(&held.r2y[p], lanes)};
@@ -485,10 +486,10 @@ const WindowOfFour* window_of(const Flow& flow, Index p, int lanes, WindowOfFour
 
 }  // namespace
 
-/// Adds numbers of points to nodes as their columns are: by sub-points.
+/// Adds numbers of points to nodes as their mass is: by sub-points.
 template <class Real>
 void Erosion::spread(Flow& flow, Index n, const Array& masses, LazyArray<double>& into) {
-    const Columns& c = flow.columns;
+    const Particles& c = flow.particles;
     const Carried<Real>& held = c.carried<Real>();
     StencilMarks marks = flow.marks_of(flow.active.tile[n]);
     const bool at_side = !flow.walls && near_side(flow.grid, flow.active.tile[n]);
@@ -502,7 +503,7 @@ void Erosion::spread(Flow& flow, Index n, const Array& masses, LazyArray<double>
         const WindowOfFour* const window = at_side ? nullptr : window_of<Real>(flow, p, lanes, room);
         if (window) return spread_window(stride, into.data(), lanes, m, *window);
         for (Index q = p; q < p + lanes; ++q)
-            spread_column<Quadratic>(flow, into.data(), {c.x[q], c.y[q], masses[q]}, edges_of(held, q));
+            spread_particle<Quadratic>(flow, into.data(), {c.x[q], c.y[q], masses[q]}, edges_of(held, q));
     });
     spread_to_[static_cast<std::size_t>(n)] = marks.reach(kReachBefore, kReachAfter);
 }
@@ -554,7 +555,7 @@ bool Erosion::find_shares(Flow& flow) {
 /// THEORY (74) and (75): each point gets by its poorest node, then what nodes have left over goes round. Few points get less
 /// than they demand: what those miss goes to the nodes.
 void Erosion::share_out(Flow& flow) {
-    flow.columns.with_real([&](auto real) {
+    flow.particles.with_real([&](auto real) {
         using Real = decltype(real);
         for_each_eroding_in_turn(flow, [&](Index n) {
             take_shares<Real>(flow, n);
@@ -594,7 +595,7 @@ bool all_usual(const Flow& flow, const LazyArray<double>& share, double usual, D
 template <class Real, class OfWindow, class OfPoint, class Take>
 void for_each_wanting(Flow& flow, Index n, const Array& wanted, const LazyArray<double>& share, double usual,
                       OfWindow&& of_window, OfPoint&& of_point, Take&& take) {
-    const Columns& c = flow.columns;
+    const Particles& c = flow.particles;
     const Carried<Real>& held = c.carried<Real>();
     const bool at_side = !flow.walls && near_side(flow.grid, flow.active.tile[n]);
     const Index stride = flow.grid.stride();
@@ -629,7 +630,7 @@ void Erosion::take_shares(Flow& flow, Index n) {
     const auto of_point = [&](Index p, const Edges& edges) {
         double least = 1.0;
         for_each_sub_point<Quadratic>(
-            flow, flow.columns.x[p], flow.columns.y[p], edges, [&](const auto& sx, const auto& sy) {
+            flow, flow.particles.x[p], flow.particles.y[p], edges, [&](const auto& sx, const auto& sy) {
                 for (int j = 0; j < 3; ++j)
                     for (int i = 0; i < 3; ++i)
                         if (sx.w[i] * sy.w[j] > 0.0)
@@ -652,7 +653,7 @@ void Erosion::take_left_over(Flow& flow, Index n) {
     const auto of_point = [&](Index p, const Edges& edges) {
         double more = 0.0;
         for_each_sub_point<Quadratic>(
-            flow, flow.columns.x[p], flow.columns.y[p], edges, [&](const auto& sx, const auto& sy) {
+            flow, flow.particles.x[p], flow.particles.y[p], edges, [&](const auto& sx, const auto& sy) {
                 for (int j = 0; j < 3; ++j)
                     for (int i = 0; i < 3; ++i)
                         more += sx.w[i] * sy.w[j] * share_[flow.grid.at(sx.base + i, sy.base + j)];
@@ -669,7 +670,7 @@ void Erosion::take_left_over(Flow& flow, Index n) {
 /// Points take what they gained into their motion.
 template <class Real>
 void Erosion::grow(Flow& flow, Index n) {
-    Columns& c = flow.columns;
+    Particles& c = flow.particles;
     Carried<Real>& held = c.carried<Real>();
     Double4 taken = {}, gained = {}, px = {}, py = {}, lost = {};
     for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
@@ -680,8 +681,8 @@ void Erosion::grow(Flow& flow, Index n) {
         const Double4 share = gain / select(grows, mass, one), grown = 1.0 + share;
         const Double4 braked = momentum_ > 0.0 ? load(&braked_[p], lanes) : none;
         const Double4 factor = select(grows, speeds_left(share, braked), one);
-        for (auto* column : {&held.vx, &held.vy, &held.cxx, &held.cxy, &held.cyx, &held.cyy})
-            store(&(*column)[p], factor * load(&(*column)[p], lanes), lanes);
+        for (auto* array : {&held.vx, &held.vy, &held.cxx, &held.cxy, &held.cyx, &held.cyy})
+            store(&(*array)[p], factor * load(&(*array)[p], lanes), lanes);
         const Double4 now = mass + gain, speed = load(&speed_[p], lanes);
         store(&c.mass[p], now, lanes);
         taken += now - mass;

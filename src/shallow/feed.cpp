@@ -98,8 +98,8 @@ double Feed::Source::depth_of(const InflowRow& row) const {
     return row.volume / (rests() ? inflow.area : width * row.length);
 }
 
-void Feed::add_row(const Source& source, const InflowRow& row, double way, Columns& columns) {
-    Seeds& seeds = columns.seeds;
+void Feed::add_row(const Source& source, const InflowRow& row, double way, Particles& particles) {
+    Seeds& seeds = particles.seeds;
     for (const Station& station : source.stations) {
         const Vec2 place = station.at + way * station.towards, velocity = row.speed * station.towards;
         seeds.x.push_back(place.x()), seeds.y.push_back(place.y());
@@ -107,13 +107,13 @@ void Feed::add_row(const Source& source, const InflowRow& row, double way, Colum
         seeds.volume.push_back(station.share * row.volume);
         seeds.depth.push_back(source.depth_of(row));
         seeds.size.push_back(source.inflow.spacing);
-        columns.from.push_back(station.at);
+        particles.from.push_back(station.at);
     }
 }
 
-void Feed::Columns::clear() {
-    for (auto* column : {&seeds.x, &seeds.y, &seeds.vx, &seeds.vy, &seeds.volume, &seeds.depth, &seeds.size})
-        column->clear();
+void Feed::Particles::clear() {
+    for (auto* array : {&seeds.x, &seeds.y, &seeds.vx, &seeds.vy, &seeds.volume, &seeds.depth, &seeds.size})
+        array->clear();
     from.clear();
 }
 
@@ -132,7 +132,7 @@ const Seeds& Feed::behind(double time, double reach) {
     return behind_.seeds;
 }
 
-/// Layers that came since the last time are one: of each, columns would lie at the same places.
+/// Layers that came since the last time are one: of each, particles would lie at the same places.
 void Feed::take_layers(const Source& source, double time, Index& next) {
     InflowRow all;
     for (; next < static_cast<Index>(source.rows.size()); ++next) {
@@ -140,11 +140,11 @@ void Feed::take_layers(const Source& source, double time, Index& next) {
         if (row.complete > time) break;
         all.volume += row.volume;
     }
-    if (all.volume > 0.0) add_row(source, all, 0.0, columns_);
+    if (all.volume > 0.0) add_row(source, all, 0.0, particles_);
 }
 
-const Feed::Columns& Feed::take(double time) {
-    columns_.clear();
+const Feed::Particles& Feed::take(double time) {
+    particles_.clear();
     for (std::size_t n = 0; n < sources_.size(); ++n) {
         const std::vector<InflowRow>& rows = sources_[n].rows;
         Index& next = next_[n];
@@ -155,10 +155,10 @@ const Feed::Columns& Feed::take(double time) {
         for (; next < static_cast<Index>(rows.size()); ++next) {
             const InflowRow& row = rows[static_cast<std::size_t>(next)];
             if (row.complete > time) break;
-            add_row(sources_[n], row, row.speed * (time - row.mean_time), columns_);
+            add_row(sources_[n], row, row.speed * (time - row.mean_time), particles_);
         }
     }
-    return columns_;
+    return particles_;
 }
 
 double Feed::expected() const {
@@ -175,7 +175,7 @@ double Feed::whole() const {
     return sum;
 }
 
-double Feed::largest_column() const {
+double Feed::largest_particle() const {
     double largest = 0.0;
     for (const Source& source : sources_)
         for (const Station& station : source.stations)
@@ -195,7 +195,7 @@ Feed::Outlook Feed::outlook(double end) const {
         const double wide = static_cast<double>(source.stations.size());
         for (const InflowRow& row : source.rows) {
             if (row.complete > end) break;
-            all.columns += wide, all.column_seconds += wide * (end - row.complete);
+            all.particles += wide, all.particle_seconds += wide * (end - row.complete);
             all.depth = std::max(all.depth, source.depth_of(row));
             if (!source.rests()) all.speed = std::max(all.speed, row.speed);
         }
@@ -228,11 +228,11 @@ void Feed::serialize(Archive& archive) {
     archive.array("next", next_);
 }
 
-double largest_column(const Scene& scene) {
+double largest_particle(const Scene& scene) {
     double largest = 0.0;
     for (const Seeds* seeds : scene.all_particles())
         for (const double volume : seeds->volume) largest = std::max(largest, volume);
-    return scene.inflows.empty() ? largest : std::max(largest, Feed(scene.inflows).largest_column());
+    return scene.inflows.empty() ? largest : std::max(largest, Feed(scene.inflows).largest_particle());
 }
 
 }  // namespace frana

@@ -1,5 +1,5 @@
 #pragma once
-// Columns that come in through lines, row by row, and over areas, layer by layer: THEORY (64).
+// Particles that come in through lines, row by row, and over areas, layer by layer: THEORY (64).
 #include <limits>
 #include <vector>
 
@@ -34,14 +34,14 @@ public:
     /// The fastest signal of the rows to come next, |v| + sqrt(g h) [m/s].
     double signal(double gravity) const;
 
-    /// Columns to come in, and where on their lines they came through, on the map.
-    struct Columns {
+    /// Particles to come in, and where on their lines they came through, on the map.
+    struct Particles {
         Seeds seeds;
         std::vector<Vec2> from;
         void clear();
     };
     /// Those of all rows complete by `time`, as they stand at that time.
-    const Columns& take(double time);
+    const Particles& take(double time);
 
     /// Those that follow, as they would stand up to `reach` [m] behind the lines, in a flow that stays the same.
     /// None of an inflow that has not begun.
@@ -51,15 +51,15 @@ public:
     double expected() const;
     /// By the whole tables [m3].
     double whole() const;
-    /// The largest volume of a column [m3].
-    double largest_column() const;
-    /// Columns that a half-cell square of the inflow holds.
+    /// The largest volume of a particle [m3].
+    double largest_particle() const;
+    /// Particles that a half-cell square of the inflow holds.
     Index in_a_square(double cell) const;
     /// All that comes in before a time.
     struct Outlook {
-        double columns = 0.0, column_seconds = 0.0;  ///< how many; the sum of their times in the flow [s]
-        double speed = 0.0, depth = 0.0;             ///< largest [m/s], [m]
-        std::vector<Vec2> from;                      ///< places where they come in, on the map
+        double particles = 0.0, particle_seconds = 0.0;  ///< how many; the sum of their times in the flow [s]
+        double speed = 0.0, depth = 0.0;                 ///< largest [m/s], [m]
+        std::vector<Vec2> from;                          ///< places where they come in, on the map
     };
     Outlook outlook(double end) const;
     /// A place where it comes in, on the map.
@@ -76,7 +76,7 @@ public:
     void take_over(const Feed& from) { next_ = from.next_; }
 
 private:
-    /// A place of a line where columns come in.
+    /// A place of a line where particles come in.
     struct Station {
         Vec2 at, towards;  ///< on the map; unit vector
         double share;      ///< of the line's width [1]
@@ -90,14 +90,14 @@ private:
         double depth_of(const InflowRow& row) const;  ///< [m]
     };
     void take_layers(const Source& source, double time, Index& next);
-    static void add_row(const Source& source, const InflowRow& row, double way, Columns& columns);
+    static void add_row(const Source& source, const InflowRow& row, double way, Particles& particles);
 
     std::vector<Source> sources_;
-    std::vector<Index> next_;   ///< row of each source
-    Columns columns_, behind_;  ///< scratch
+    std::vector<Index> next_;       ///< row of each source
+    Particles particles_, behind_;  ///< scratch
 };
 
-/// The largest volume of a column that a scene has at its start, or that comes in later [m3].
-double largest_column(const Scene& scene);
+/// The largest volume of a particle that a scene has at its start, or that comes in later [m3].
+double largest_particle(const Scene& scene);
 
 }  // namespace frana

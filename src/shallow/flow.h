@@ -6,10 +6,10 @@
 #include "mpm/tile_grid.h"
 #include "scene/scene.h"
 #include "shallow/bed_geometry.h"
-#include "shallow/columns.h"
 #include "shallow/node_laws.h"
 #include "shallow/node_rheologies.h"
 #include "shallow/nodes.h"
+#include "shallow/particles.h"
 #include "shallow/rest.h"
 
 namespace frana {
@@ -62,7 +62,7 @@ struct Flow {
     std::optional<NodeLaws> laws;              ///< nothing: one bed law everywhere
     std::optional<NodeRheologies> rheologies;  ///< nothing: one rheology everywhere
     Nodes nodes;
-    Columns columns;
+    Particles particles;
     ActiveTiles active;
     double density;  ///< [kg/m^3]
     double gravity;  ///< [m/s^2]

@@ -16,7 +16,7 @@
 namespace frana {
 namespace {
 
-/// The nodes that a point's column mass goes to and their weights, walls folded in: one row of B^T.
+/// The nodes that a particle's mass goes to and their weights, walls folded in: one row of B^T.
 struct Reach {
     static constexpr int kMost = 64;  // four sub-points, 4 x 4 nodes of a cubic
     int count = 0;
@@ -48,7 +48,7 @@ Folded folded(const Flow& flow, Index i, Index j) {
 
 template <class S>
 Reach reach_with(const Flow& flow, Index p) {
-    const Columns& c = flow.columns;
+    const Particles& c = flow.particles;
     const Edges edges = c.with_real([&](auto real) { return edges_of(c.carried<decltype(real)>(), p); });
     Reach reach;
     const double sub_reach = flow.scheme.sub_point_reach;
@@ -80,8 +80,8 @@ public:
     using Numbers = Eigen::VectorXd;
 
     explicit FitSystem(const Flow& flow) : row_(flow.grid.size()) {
-        reach_.reserve(static_cast<std::size_t>(flow.columns.count()));
-        for (Index p = 0; p < flow.columns.count(); ++p) reach_.push_back(reach_of(flow, p));
+        reach_.reserve(static_cast<std::size_t>(flow.particles.count()));
+        for (Index p = 0; p < flow.particles.count(); ++p) reach_.push_back(reach_of(flow, p));
     }
     void set_rows(const std::vector<Index>& nodes) {
         for (std::size_t r = 0; r < nodes.size(); ++r) row_[nodes[r]] = static_cast<Index>(r) + 1;
@@ -120,14 +120,14 @@ private:
     Eigen::SparseMatrix<double> deposit_;
 };
 
-/// Deposits the columns' mass alone and finds wetness and margin.
-void deposit_columns(Flow& flow) {
+/// Deposits the particles' mass alone and finds wetness and margin.
+void deposit_particles(Flow& flow) {
     start_deposit(flow, 1, 3);
     reach_all(flow);
-    for (Index p = 0; p < flow.columns.count(); ++p) {
+    for (Index p = 0; p < flow.particles.count(); ++p) {
         const Reach reach = reach_of(flow, p);
         for (int n = 0; n < reach.count; ++n)
-            flow.nodes.column_mass[reach.node[n]] += flow.columns.mass[p] * reach.weight[n];
+            flow.nodes.column_mass[reach.node[n]] += flow.particles.mass[p] * reach.weight[n];
     }
     depth_pass(flow, {0.0, Vec2(0, 0)});
 }
@@ -155,13 +155,13 @@ double off_level(const Flow& flow, double level) {
 MassFit fit_masses(Flow& flow, double level) {
     MassFit fit;
     using Numbers = FitSystem::Numbers;
-    const Numbers start = Numbers::Map(flow.columns.mass.data(), flow.columns.count());
+    const Numbers start = Numbers::Map(flow.particles.mass.data(), flow.particles.count());
     // A mass that meets its limits stays there, with no weight of its own, and the others are fitted again.
     Numbers from = start, weight = start;
     FitSystem system(flow);
     const double column = flow.density * flow.area;
 
-    deposit_columns(flow);
+    deposit_particles(flow);
     mark_margin(flow);
     std::vector<Index> rows;
     const auto gather_rows = [&](bool margin, double below) {
@@ -192,18 +192,18 @@ MassFit fit_masses(Flow& flow, double level) {
         Index clipped = 0;
         for (Index p = 0; p < start.size(); ++p) {
             const double wanted = from[p] + change[p];
-            flow.columns.mass[p] = std::clamp(wanted, 0.03 * start[p], 5.0 * start[p]);
-            if (flow.columns.mass[p] != wanted) {
-                from[p] = flow.columns.mass[p];
+            flow.particles.mass[p] = std::clamp(wanted, 0.03 * start[p], 5.0 * start[p]);
+            if (flow.particles.mass[p] != wanted) {
+                from[p] = flow.particles.mass[p];
                 weight[p] = 0.0;
                 ++clipped;
             }
-            fit.largest_change = std::max(fit.largest_change, std::abs(flow.columns.mass[p] / start[p] - 1.0));
+            fit.largest_change = std::max(fit.largest_change, std::abs(flow.particles.mass[p] / start[p] - 1.0));
         }
         fit.clipped += clipped;
         if (clipped > 0 && ++refits < 20) continue;
         ++round;
-        deposit_columns(flow);
+        deposit_particles(flow);
         mark_margin(flow);
         // A margin node that would stand below the level lowers the surface (the margin takes a minimum).
         if (gather_rows(true, level - 1e-13 * std::max(1.0, std::abs(level))) == 0) break;

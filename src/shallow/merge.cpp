@@ -51,7 +51,7 @@ public:
     Squares(const Flow& flow, Index n, const std::int32_t* sorted, std::int32_t* order, std::int16_t* square)
         : i0_(2 * flow.grid.tile_i(flow.active.tile[n]) + 1),
           j0_(2 * flow.grid.tile_j(flow.active.tile[n]) + 1),
-          c_(flow.columns),
+          c_(flow.particles),
           order_(order) {
         const Index begin = flow.active.begin[n], end = flow.active.begin[n + 1];
         Index held = 0;
@@ -86,13 +86,13 @@ private:
                                          std::clamp<Index>(i, 0, kSide - 1));
     }
     Index i0_, j0_;
-    const Columns& c_;
+    const Particles& c_;
     std::int32_t* order_;
     Index end_of_[kSide * kSide] = {};
 };
 
 /// Growth of the second moments by a union [kg cells^2].
-double cost_of(const Columns& c, Index a, Index b) {
+double cost_of(const Particles& c, Index a, Index b) {
     const double dx = c.x[a] - c.x[b], dy = c.y[a] - c.y[b];
     return c.mass[a] * c.mass[b] / (c.mass[a] + c.mass[b]) * (dx * dx + dy * dy);
 }
@@ -103,7 +103,7 @@ struct Pick {
 
 /// The cheapest union among `count` points, nothing when two tie. None is heavier than two points of their mean. Light
 /// neighbours are cheap. Without that limit the heaviest takes in one after the other, and goes on as a lump.
-Pick cheapest(const Columns& c, const std::int32_t* points, Index count) {
+Pick cheapest(const Particles& c, const std::int32_t* points, Index count) {
     double heaviest = 0.0;
     for (Index m = 0; m < count; ++m) heaviest += c.mass[points[m]];
     heaviest *= kHeaviest / static_cast<double>(count);
@@ -128,7 +128,7 @@ Pick cheapest(const Columns& c, const std::int32_t* points, Index count) {
 /// `most` points. Sums what it returns. Parts are places: were a crowd cut off in the order it is stored in, mirror
 /// particles would part.
 template <class Body>
-Index in_parts(const Columns& c, const Square& square, std::int32_t* points, Index count, Index most, Body&& body) {
+Index in_parts(const Particles& c, const Square& square, std::int32_t* points, Index count, Index most, Body&& body) {
     if (count <= kMostCompared || square.depth == kDeepest) return body(points, count);
     std::int32_t *from = points, *const end = points + count;
     Index sum = 0;
@@ -146,7 +146,8 @@ Index in_parts(const Columns& c, const Square& square, std::int32_t* points, Ind
 
 Merger::Merger(const Flow& flow) {
     make_room(flow.active);
-    std::vector<std::int32_t> sorted(static_cast<std::size_t>(flow.columns.count()));  // points lie as they are sorted
+    std::vector<std::int32_t> sorted(
+        static_cast<std::size_t>(flow.particles.count()));  // points lie as they are sorted
     std::iota(sorted.begin(), sorted.end(), 0);
     for (Index n = 0; n < flow.active.count(); ++n) {
         const Squares squares(flow, n, sorted.data(), order_.data(), square_.data());
@@ -175,7 +176,7 @@ void Merger::make_room(const ActiveTiles& active) {
 }
 
 Index Merger::merge(Flow& flow, const std::vector<std::int32_t>& sorted, std::vector<std::uint8_t>& gone) {
-    assign_sparingly(gone, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
+    assign_sparingly(gone, static_cast<std::size_t>(flow.particles.count()), std::uint8_t{0});
     if (notes_) resize_sparingly(into_, gone.size());
     make_room(flow.active);
     merged_.assign(static_cast<std::size_t>(flow.active.count()), 0);
@@ -195,22 +196,23 @@ Index Merger::merge_tile(Flow& flow, Index n, const std::int32_t* sorted, std::v
     const Squares squares(flow, n, sorted, order_.data() + own, square_.data() + own);
     const double longest = kNoResplit * flow.scheme.split_length;
     const auto unite_cheapest = [&](const std::int32_t* points, Index count) -> Index {
-        const Pick pick = cheapest(flow.columns, points, std::min(count, kMostCompared));
+        const Pick pick = cheapest(flow.particles, points, std::min(count, kMostCompared));
         if (pick.a < 0) return 0;
-        return flow.columns.with_real(
+        return flow.particles.with_real(
             [&](auto real) { return unite<decltype(real)>(flow, pick.a, pick.b, longest, gone); });
     };
     Index merged = 0;
     for (Index s = 0; s < kSide * kSide; ++s)
         if (squares.held(s) > most_)
-            merged += in_parts(flow.columns, squares.at(s), squares.points(s), squares.held(s), most_, unite_cheapest);
+            merged +=
+                in_parts(flow.particles, squares.at(s), squares.points(s), squares.held(s), most_, unite_cheapest);
     return merged;
 }
 
 /// Point b goes into point a.
 template <class Real>
 bool Merger::unite(Flow& flow, Index a, Index b, double longest, std::vector<std::uint8_t>& gone) {
-    Columns& c = flow.columns;
+    Particles& c = flow.particles;
     Carried<Real>& held = c.carried<Real>();
     if (c.mass[b] > c.mass[a]) std::swap(a, b);  // the id is that of the heavier one
     const double mass = c.mass[a] + c.mass[b], fa = c.mass[a] / mass, fb = c.mass[b] / mass;
@@ -220,9 +222,9 @@ bool Merger::unite(Flow& flow, Index a, Index b, double longest, std::vector<std
     moments.add(fb, Moments::of(edges_of(held, b)), fa * dx, fa * dy);
     const Edges edges = rectangle_of(moments);
     if (edges.length1_2() >= longest * longest) return false;
-    for (auto* column : {&c.x, &c.y}) (*column)[a] = fa * (*column)[a] + fb * (*column)[b];
-    for (auto* column : {&held.vx, &held.vy, &held.cxx, &held.cxy, &held.cyx, &held.cyy, &held.depth})
-        (*column)[a] = static_cast<Real>(fa * (*column)[a] + fb * (*column)[b]);
+    for (auto* array : {&c.x, &c.y}) (*array)[a] = fa * (*array)[a] + fb * (*array)[b];
+    for (auto* array : {&held.vx, &held.vy, &held.cxx, &held.cxy, &held.cyx, &held.cyy, &held.depth})
+        (*array)[a] = static_cast<Real>(fa * (*array)[a] + fb * (*array)[b]);
     c.mass[a] = mass;
     set_edges(held, a, edges);
     gone[static_cast<std::size_t>(b)] = 1;

@@ -49,7 +49,7 @@ bool Passages::near(const Vec2& place) const {
 
 void Passages::note(const Flow& flow, const std::vector<std::int32_t>* order) {
     noted_.clear();
-    const Columns& c = flow.columns;
+    const Particles& c = flow.particles;
     for (Index n = 0; n < flow.active.count(); ++n) {
         if (!watched_[static_cast<std::size_t>(flow.active.tile[n])]) continue;
         for (Index place = flow.active.begin[n]; place < flow.active.begin[n + 1]; ++place) {
@@ -71,12 +71,12 @@ void Passages::count(const Vec2& from, const Vec2& to, double mass) {
 }
 
 void Passages::count_moved(const Flow& flow) {
-    const Columns& c = flow.columns;
+    const Particles& c = flow.particles;
     for (const Noted& was : noted_) count(was.place, {c.x[was.p], c.y[was.p]}, was.mass);
 }
 
 void Passages::count_halved(const Flow& flow, Index first, const std::vector<Index>& parents) {
-    const Columns& c = flow.columns;
+    const Particles& c = flow.particles;
     by_id_.resize(noted_.size());
     for (std::size_t n = 0; n < noted_.size(); ++n) by_id_[n] = n;
     std::sort(by_id_.begin(), by_id_.end(), [&](std::size_t a, std::size_t b) { return noted_[a].id < noted_[b].id; });
@@ -93,7 +93,7 @@ void Passages::count_halved(const Flow& flow, Index first, const std::vector<Ind
 
 void Passages::count_merged(const Flow& flow, const std::vector<std::uint8_t>& gone,
                             const std::vector<std::int32_t>& into) {
-    const Columns& c = flow.columns;
+    const Particles& c = flow.particles;
     for (const Noted& was : noted_) {
         const std::size_t p = static_cast<std::size_t>(was.p);
         const Index now = gone[p] ? Index{into[p]} : was.p;

@@ -26,7 +26,7 @@ struct Peaks {
 };
 
 /// THEORY (59): speed along the bed and normal pressure on it at a node, from the velocity (vx, vy) there. Both by the
-/// bed smoothed to `curvature_length`. A column slides over the roughness of single cells, and does not jump up and
+/// bed smoothed to `curvature_length`. A particle slides over the roughness of single cells, and does not jump up and
 /// down with them. By the raw slope the speed would grow with every finer cell.
 struct BedContact {
     double speed, pressure;

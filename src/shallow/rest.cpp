@@ -51,8 +51,8 @@ void mark_stencils(Flow& flow, Index n, int before, int after) {
     const Index tile = flow.active.tile[n];
     StencilMarks marks = flow.marks_of(tile);
     for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p)
-        marks.mark(static_cast<std::int32_t>(std::floor(flow.columns.x[p] + (kTile - 0.5))),
-                   static_cast<std::int32_t>(std::floor(flow.columns.y[p] + (kTile - 0.5))));
+        marks.mark(static_cast<std::int32_t>(std::floor(flow.particles.x[p] + (kTile - 0.5))),
+                   static_cast<std::int32_t>(std::floor(flow.particles.y[p] + (kTile - 0.5))));
     flow.reach[tile] = marks.reach(before, after);
 }
 

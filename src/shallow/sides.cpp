@@ -11,8 +11,8 @@ namespace frana {
 
 template <class Real>
 double leave(const Flow& flow, Index p, Index k, PointSums& sums) {
-    const Carried<Real>& held = flow.columns.carried<Real>();
-    const double m = flow.columns.mass[p], vx = held.vx[p], vy = held.vy[p], depth = held.depth[p];
+    const Carried<Real>& held = flow.particles.carried<Real>();
+    const double m = flow.particles.mass[p], vx = held.vx[p], vy = held.vy[p], depth = held.depth[p];
     sums.left_count += 1;
     sums.left_mass += m;
     sums.left_px += m * vx;
@@ -31,7 +31,7 @@ namespace {
 /// - 1e-19 is 29.
 template <class Real>
 void settle_on_walls(Flow& flow, Index p, double x_max, double y_max) {
-    Columns& c = flow.columns;
+    Particles& c = flow.particles;
     Carried<Real>& held = c.carried<Real>();
     const auto on = [](double& u, double end) {
         if (std::abs(u) > kOnWall && std::abs(u - end) > kOnWall) return false;
@@ -54,7 +54,7 @@ void settle_on_walls(Flow& flow, Index p, double x_max, double y_max) {
 /// height alone would not hold the foremost. Returns how far it was set back [cells].
 template <class Real>
 double stay_out(Flow& flow, Index p, Index i, Index j, PointSums& sums) {
-    Columns& c = flow.columns;
+    Particles& c = flow.particles;
     Carried<Real>& held = c.carried<Real>();
     const double dx = c.x[p] - static_cast<double>(i), dy = c.y[p] - static_cast<double>(j);
     double least = 4.0;
@@ -86,7 +86,7 @@ double stay_out(Flow& flow, Index p, Index i, Index j, PointSums& sums) {
 /// A long step could lead over a wall of one pixel. A point whose way does stops on that pixel, for the caller to set back.
 void stop_on_way(Flow& flow, Index p, double dx, double dy) {
     constexpr double kStride = 0.5;  // [cells]: no pixel is missed, but for the corners of some
-    Columns& c = flow.columns;
+    Particles& c = flow.particles;
     const double parts = std::ceil(std::max(std::abs(dx), std::abs(dy)) / kStride);
     for (double part = 1.0; part < parts; ++part) {
         const double left = 1.0 - part / parts, x = c.x[p] - left * dx, y = c.y[p] - left * dy;
@@ -100,7 +100,7 @@ void stop_on_way(Flow& flow, Index p, double dx, double dy) {
 
 template <class Real>
 double meet_side(Flow& flow, Index p, double dx, double dy, std::vector<std::uint8_t>& gone, PointSums& sums) {
-    Columns& c = flow.columns;
+    Particles& c = flow.particles;
     Carried<Real>& held = c.carried<Real>();
     if (flow.bed.has_exits) stop_on_way(flow, p, dx, dy);
     const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);

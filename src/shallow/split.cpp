@@ -11,8 +11,8 @@ template <class Real>
 void Splitter::widen_grown(Flow& flow) const {
     constexpr double kCrowded = 4.0;  // at margins the depth at a point is a half or a quarter of its own
     const double longest = (flow.scheme.split ? 2.0 : 1.0) * std::max(1.0, flow.scheme.split_length);
-    const Columns& c = flow.columns;
-    Carried<Real>& held = flow.columns.carried<Real>();
+    const Particles& c = flow.particles;
+    Carried<Real>& held = flow.particles.carried<Real>();
     for_each_tile(flow.active, [&](Index n) {
         std::uint8_t& quiet = flow.active.quiet[flow.active.tile[n]];
         if (quiet >= kAsleep) return;
@@ -35,9 +35,9 @@ Index Splitter::split(Flow& flow) {
     const Scheme& scheme = flow.scheme;
     const HalvingRules rules{scheme.split_length, least_mass_, scheme.split, scheme.reset_domains,
                              scheme.shape == Shape::linear ? kOff : 0.0};
-    return flow.columns.with_real([&](auto real) {
+    return flow.particles.with_real([&](auto real) {
         if (std::isfinite(grown_mass_)) widen_grown<decltype(real)>(flow);
-        return halve_points(flow.grid, flow.active, rules, flow.columns, flow.columns.carried<decltype(real)>(),
+        return halve_points(flow.grid, flow.active, rules, flow.particles, flow.particles.carried<decltype(real)>(),
                             halves_, [](Index) { return true; });
     });
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The columns' mass on the nodes, from sub-points that follow the material: what the depth is made of.
+// The particles' mass on the nodes, from sub-points that follow the material: what the depth is made of.
 #include <algorithm>
 
 #include "mpm/domain.h"
@@ -8,9 +8,9 @@
 
 namespace frana {
 
-/// Spreads a column's mass [kg] over the nodes of its stencil, `into` an array on the grid's storage.
+/// Spreads a particle's mass [kg] over the nodes of its stencil, `into` an array on the grid's storage.
 template <class S>
-void deposit_column(const TileGrid& grid, double* into, const S& sx, const S& sy, double mass) {
+void deposit_particle(const TileGrid& grid, double* into, const S& sx, const S& sy, double mass) {
     for (int j = 0; j < S::kNodes; ++j) {
         double* row = into + grid.at(sx.base, sy.base + j);
         const double weight = mass * sy.w[j];
@@ -18,8 +18,8 @@ void deposit_column(const TileGrid& grid, double* into, const S& sx, const S& sy
     }
 }
 
-/// A column's mass [kg] at its place [cells].
-struct ColumnAt {
+/// A particle's mass [kg] at its place [cells].
+struct MassAt {
     double x, y, mass;
 };
 
@@ -42,19 +42,20 @@ void for_each_sub_point(const Flow& flow, double at_x, double at_y, const Edges&
     }
 }
 
-/// A quarter of the column goes to each sub-point.
+/// A quarter of the particle goes to each sub-point.
 template <class S>
-void spread_column(const Flow& flow, double* into, const ColumnAt& column, const Edges& r) {
-    const double quarter = 0.25 * column.mass;
-    for_each_sub_point<S>(flow, column.x, column.y, r,
-                          [&](const S& sx, const S& sy) { deposit_column(flow.grid, into, sx, sy, quarter); });
+void spread_particle(const Flow& flow, double* into, const MassAt& particle, const Edges& r) {
+    const double quarter = 0.25 * particle.mass;
+    for_each_sub_point<S>(flow, particle.x, particle.y, r,
+                          [&](const S& sx, const S& sy) { deposit_particle(flow.grid, into, sx, sy, quarter); });
 }
 
 /// Those of a point of the flow.
 template <class S, class Real>
 void deposit_sub_points(Flow& flow, Index p) {
-    const Columns& c = flow.columns;
-    spread_column<S>(flow, flow.nodes.column_mass.data(), {c.x[p], c.y[p], c.mass[p]}, edges_of(c.carried<Real>(), p));
+    const Particles& c = flow.particles;
+    spread_particle<S>(flow, flow.nodes.column_mass.data(), {c.x[p], c.y[p], c.mass[p]},
+                       edges_of(c.carried<Real>(), p));
 }
 
 /// The same with quadratic shape functions, for the few points that the packed kernel does not take.

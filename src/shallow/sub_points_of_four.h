@@ -1,5 +1,5 @@
 #pragma once
-// Four points at once: their columns on the nodes, from their sub-points (sub_points.h), and gradients as they feel them.
+// Four points at once: their mass on the nodes, from their sub-points (sub_points.h), and gradients as they feel them.
 #include "mpm/domain.h"
 #include "mpm/stencils.h"
 #include "shallow/sub_points.h"

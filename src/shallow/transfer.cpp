@@ -77,8 +77,8 @@ public:
             StencilMarks marks = flow.marks_of(tile);
             for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
                 deposit_point(flow, p, cap, sums);
-                marks.mark(static_cast<std::int32_t>(std::floor(flow.columns.x[p] + (kTile - 0.5))),
-                           static_cast<std::int32_t>(std::floor(flow.columns.y[p] + (kTile - 0.5))));
+                marks.mark(static_cast<std::int32_t>(std::floor(flow.particles.x[p] + (kTile - 0.5))),
+                           static_cast<std::int32_t>(std::floor(flow.particles.y[p] + (kTile - 0.5))));
             }
             flow.reach[tile] = marks.reach(kBefore, kAfter);
             deposited_[tile] = sums;
@@ -89,7 +89,7 @@ public:
 
     PointSums gather(Flow& flow, double dt) override {
         make_room(flow);
-        assign_sparingly(gone_, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
+        assign_sparingly(gone_, static_cast<std::size_t>(flow.particles.count()), std::uint8_t{0});
         choose_gathers(flow);
         for_each_tile(flow.active, [&](Index n) {
             if (!flow.rest.gathers[n]) return;
@@ -105,9 +105,8 @@ public:
     PointSums carry(Flow& flow, double dt, double velocity_dt) override { return carry_apart(flow, dt, velocity_dt); }
 
     void probe(Flow& flow, Probe& out) override {
-        const std::size_t count = static_cast<std::size_t>(flow.columns.count());
-        for (auto* column : {&out.vx, &out.vy, &out.cxx, &out.cxy, &out.cyx, &out.cyy, &out.depth})
-            column->resize(count);
+        const std::size_t count = static_cast<std::size_t>(flow.particles.count());
+        for (auto* array : {&out.vx, &out.vy, &out.cxx, &out.cxy, &out.cyx, &out.cyy, &out.depth}) array->resize(count);
         for_each_tile(flow.active, [&](Index n) {
             for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
                 const Gathered g = gathered(flow, p);
@@ -118,7 +117,7 @@ public:
                 out.cxy[p] = g.cxy;
                 out.cyx[p] = g.cyx;
                 out.cyy[p] = g.cyy;
-                out.depth[p] = kPaper ? flow.columns.depth[p] : g.depth;
+                out.depth[p] = kPaper ? flow.particles.depth[p] : g.depth;
             }
         });
     }
@@ -138,7 +137,7 @@ private:
     /// What an affine point retains of its own motion beyond the nodes'. It is of what it brought each node more than
     /// that had, as far as friction there left it. In sum over the points of a node that is nothing.
     Gathered own(const Flow& flow, Index p) const {
-        const Columns& c = flow.columns;
+        const Particles& c = flow.particles;
         const S sx(c.x[p]), sy(c.y[p]);
         const Gradient g = spanned({c.cxx[p], c.cxy[p], c.cyx[p], c.cyy[p]}, c.r1x[p], c.r1y[p], c.r2x[p], c.r2y[p]);
         Gathered sum{};
@@ -162,7 +161,7 @@ private:
     }
 
     void deposit_point(Flow& flow, Index p, double cap, PointSums& sums) {
-        const Columns& c = flow.columns;
+        const Particles& c = flow.particles;
         const S sx(c.x[p]), sy(c.y[p]);
         const double m = c.mass[p], vx = c.vx[p], vy = c.vy[p];
         Deposit* deposits = flow.nodes.deposits();
@@ -184,7 +183,7 @@ private:
                 flow.nodes.mass[first + i] += sx.w[i] * sy.w[j] * m;
             }
         }
-        if constexpr (kPaper) deposit_column(flow.grid, flow.nodes.column_mass.data(), sx, sy, m);
+        if constexpr (kPaper) deposit_particle(flow.grid, flow.nodes.column_mass.data(), sx, sy, m);
         if constexpr (!kPaper) deposit_sub_points<S, double>(flow, p);
         if constexpr (kStress) {
             if (c.depth[p] > flow.dry_depth()) {
@@ -207,7 +206,7 @@ private:
     }
 
     Gathered gathered(const Flow& flow, Index p) const {
-        const Columns& c = flow.columns;
+        const Particles& c = flow.particles;
         const S sx(c.x[p]), sy(c.y[p]);
         const Motion* motions = flow.nodes.motions();
         Double4 value = {}, by_x = {}, by_y = {};
@@ -258,15 +257,16 @@ private:
     std::pair<double, double> velocity_of(const Flow& flow, Index p, const Gathered& g) const {
         if constexpr (kTransfer == Transfer::flip) {
             const double flip_share = 1.0 - (1.0 - flow.scheme.flip_ratio) * (1.0 - flow.carried_share);
-            return {flip_share * (g.velocity_share * flow.columns.vx[p] + g.vx - g.old_x) + (1.0 - flip_share) * g.vx,
-                    flip_share * (g.velocity_share * flow.columns.vy[p] + g.vy - g.old_y) + (1.0 - flip_share) * g.vy};
+            return {
+                flip_share * (g.velocity_share * flow.particles.vx[p] + g.vx - g.old_x) + (1.0 - flip_share) * g.vx,
+                flip_share * (g.velocity_share * flow.particles.vy[p] + g.vy - g.old_y) + (1.0 - flip_share) * g.vy};
         } else {
             return {g.vx, g.vy};
         }
     }
 
     void gather_point(Flow& flow, Index p, double dt, PointSums& sums) {
-        Columns& c = flow.columns;
+        Particles& c = flow.particles;
         const Gathered g = gathered(flow, p);
         auto [vx, vy] = velocity_of(flow, p, g);
         Gathered more{};

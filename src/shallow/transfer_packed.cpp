@@ -85,9 +85,8 @@ public:
     }
 
     void probe(Flow& flow, Probe& out) override {
-        const std::size_t count = static_cast<std::size_t>(flow.columns.count());
-        for (auto* column : {&out.vx, &out.vy, &out.cxx, &out.cxy, &out.cyx, &out.cyy, &out.depth})
-            column->resize(count);
+        const std::size_t count = static_cast<std::size_t>(flow.particles.count());
+        for (auto* array : {&out.vx, &out.vy, &out.cxx, &out.cxy, &out.cyx, &out.cyy, &out.depth}) array->resize(count);
         for_each_tile(flow.active, [&](Index n) {
             for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
                 const Gathered g(flow, p, lanes);
@@ -129,7 +128,7 @@ private:
 
     void prepare_gather(const Flow& flow) {
         make_room(flow);
-        assign_sparingly(gone_, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
+        assign_sparingly(gone_, static_cast<std::size_t>(flow.particles.count()), std::uint8_t{0});
     }
 
     /// Clears what will be deposited; returns the largest 2 mu_eff that is stable explicitly [Pa s].
@@ -145,21 +144,21 @@ private:
         const Index last = flow.active.begin[n + 1];
         for (Index first = flow.active.begin[n]; first < last; first += kBatch) {
             const Index end = std::min(first + kBatch, last);
-            touch_points(flow.columns, first, end);
+            touch_points(flow.particles, first, end);
             body(first, end, at_side);
         }
     }
 
-    /// All columns side by side (base/touch.h).
-    static void touch_points(const Columns& c, Index first, Index end) {
+    /// All particles side by side (base/touch.h).
+    static void touch_points(const Particles& c, Index first, Index end) {
         const Carried<Real>& h = c.carried<Real>();
         const double* const placed[] = {c.x.data(), c.y.data(), c.mass.data()};
         const Real* const carried[] = {h.r1x.data(), h.r1y.data(), h.r2x.data(),  h.r2y.data(),
                                        h.vx.data(),  h.vy.data(),  h.cxx.data(),  h.cxy.data(),
                                        h.cyx.data(), h.cyy.data(), h.depth.data()};
         for (Index p = first; p < end; p += kCacheLine / sizeof(double)) {
-            for (const double* column : placed) touch(column + p);
-            for (const Real* column : carried) touch(column + p);
+            for (const double* particle : placed) touch(particle + p);
+            for (const Real* particle : carried) touch(particle + p);
         }
     }
 
@@ -198,12 +197,12 @@ private:
         for_each_four(first, end, [&](Index p, int lanes) {
             deposit_four(flow, p, lanes, internal_force[(p - first) / 4], marks, sums);
         });
-        for_each_four(first, end, [&](Index p, int lanes) { deposit_columns(flow, p, lanes, at_side); });
+        for_each_four(first, end, [&](Index p, int lanes) { deposit_particles(flow, p, lanes, at_side); });
     }
 
     void deposit_four(Flow& flow, Index p, int lanes, const PlaneOf<Double4>& internal_force, StencilMarks& marks,
                       Sums& sums) {
-        const Columns& c = flow.columns;
+        const Particles& c = flow.particles;
         const Carried<Real>& held = c.carried<Real>();
         const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes), m = load(&c.mass[p], lanes);
         const Double4 vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes);
@@ -224,8 +223,8 @@ private:
     }
 
     /// Those that lie farther from their points than half a cell, or next to the grid's sides, one by one.
-    static void deposit_columns(Flow& flow, Index p, int lanes, bool at_side) {
-        const Columns& c = flow.columns;
+    static void deposit_particles(Flow& flow, Index p, int lanes, bool at_side) {
+        const Particles& c = flow.particles;
         const Carried<Real>& held = c.carried<Real>();
         const Domains r{load(&held.r1x[p], lanes), load(&held.r1y[p], lanes), load(&held.r2x[p], lanes),
                         load(&held.r2y[p], lanes)};
@@ -237,7 +236,7 @@ private:
 
     /// Of four points [1/s].
     static Double4 shear_of(const Flow& flow, Index p, int lanes) {
-        const Columns& c = flow.columns;
+        const Particles& c = flow.particles;
         const Carried<Real>& held = c.carried<Real>();
         return shear_of_four(flow, load(&c.x[p], lanes), load(&c.y[p], lanes), lanes, load(&held.vx[p], lanes),
                              load(&held.vy[p], lanes), max(load(&held.depth[p], lanes), all(flow.dry_depth())));
@@ -247,7 +246,7 @@ private:
     template <class Points>
     static PlaneOf<Double4> internal_force_of(const Points& rheology, const Flow& flow, Index p, int lanes,
                                               Double4 shear, double cap, Sums& sums) {
-        const Columns& c = flow.columns;
+        const Particles& c = flow.particles;
         const Carried<Real>& held = c.carried<Real>();
         const Double4 depth = load(&held.depth[p], lanes);
         const Double4 cxy = load(&held.cxy[p], lanes), cyx = load(&held.cyx[p], lanes), zero = {};
@@ -281,7 +280,7 @@ private:
 
     struct Gathered : OfFour {
         [[gnu::always_inline]] Gathered(const Flow& flow, Index p, int lanes) {
-            const Columns& c = flow.columns;
+            const Particles& c = flow.particles;
             const Stencils sx(load(&c.x[p], lanes)), sy(load(&c.y[p], lanes));
             const Index stride = flow.grid.stride();
             Double4 value[4], by_x[4], by_y[4];
@@ -311,7 +310,7 @@ private:
                        max(max(abs(this->cxx), abs(this->cxy)), max(abs(this->cyx), abs(this->cyy))));
         }
         [[gnu::noinline]] Own(const Flow& flow, Index p, int lanes) {
-            const Columns& c = flow.columns;
+            const Particles& c = flow.particles;
             const Carried<Real>& held = c.carried<Real>();
             const Stencils sx(load(&c.x[p], lanes)), sy(load(&c.y[p], lanes));
             Double4 gxx = load(&held.cxx[p], lanes), gxy = load(&held.cxy[p], lanes);
@@ -368,7 +367,7 @@ private:
     }
 
     [[gnu::always_inline]] void gather_four(Flow& flow, Index p, int lanes, double dt, Sums& sums) {
-        Columns& c = flow.columns;
+        Particles& c = flow.particles;
         Carried<Real>& held = c.carried<Real>();
         const Gathered g(flow, p, lanes);
         const double cells = dt / flow.cell;

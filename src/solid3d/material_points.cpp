@@ -19,7 +19,7 @@ void Sorter3d::sort(MaterialPoints& points, const Grid3d& grid, const std::vecto
     });
     order_.lay_out(active);
     fields_.clear();
-    points.each([&](Array& column) { fields_.push_back(&column); });
+    points.each([&](Array& array) { fields_.push_back(&array); });
     fields_.push_back(&points.id);
     order_.permute(fields_);
     list_tiles(grid, active);

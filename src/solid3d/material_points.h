@@ -8,7 +8,7 @@
 namespace frana {
 
 /// 3D points. Positions are in cells from node (0, 0, 0); all else is SI. A law has up to six numbers
-/// of its own for each point (law/solid/laws.h). Columns that no law needs are empty.
+/// of its own for each point (law/solid/laws.h). Arrays that no law needs are empty.
 struct MaterialPoints {
     std::array<Array, 3> x;         ///< position [cells]
     std::array<Array, 3> v;         ///< velocity [m/s]
@@ -22,26 +22,26 @@ struct MaterialPoints {
 
     Index count() const { return static_cast<Index>(mass.size()); }
 
-    /// The one list of floating-point columns in use, for sorting, growing and serializing.
+    /// The one list of floating-point arrays in use, for sorting, growing and serializing.
     template <class Visit>
     void each(Visit&& visit) {
-        for (Array& column : x) visit(column);
-        for (Array& column : v) visit(column);
-        for (Array& column : gradient) visit(column);
+        for (Array& array : x) visit(array);
+        for (Array& array : v) visit(array);
+        for (Array& array : gradient) visit(array);
         visit(mass), visit(rest_volume), visit(j);
         for (int n = 0; n < states; ++n) visit(state[static_cast<std::size_t>(n)]);
     }
     /// Memory of all of them.
     Index bytes() const {
         Index sum = allocated(mass) + allocated(rest_volume) + allocated(j) + allocated(id);
-        const auto add = [&](const auto& columns) {
-            for (const Array& column : columns) sum += allocated(column);
+        const auto add = [&](const auto& arrays) {
+            for (const Array& array : arrays) sum += allocated(array);
         };
         add(x), add(v), add(gradient), add(state);
         return sum;
     }
     void resize(Index count) {
-        each([&](Array& column) { resize_sparingly(column, static_cast<std::size_t>(count)); });
+        each([&](Array& array) { resize_sparingly(array, static_cast<std::size_t>(count)); });
         resize_sparingly(id, static_cast<std::size_t>(count));
     }
 };

@@ -54,8 +54,8 @@ struct MirrorBatch {
             above[lane] = above[0], shift[lane] = shift[0], steeper[lane] = steeper[0];
         }
     }
-    Double4 of(const Array& column) const {
-        return Double4{column[point[0]], column[point[1]], column[point[2]], column[point[3]]};
+    Double4 of(const Array& array) const {
+        return Double4{array[point[0]], array[point[1]], array[point[2]], array[point[3]]};
     }
 };
 

@@ -96,7 +96,7 @@ void Mpm3d::place(const SolidSeeds& seeds) {
         const Vec3 x = (seeds.position[n] - g.origin) / g.cell;
         const double mass = seeds.mass[n], speed = seeds.velocity[n].norm();
         for (int k = 0; k < 3; ++k) q.x[k][p] = x[k], q.v[k][p] = seeds.velocity[n][k];
-        for (Array& column : q.gradient) column[p] = 0.0;
+        for (Array& array : q.gradient) array[p] = 0.0;
         double state[7];
         const double energy = kernel_->press(seeds.pressure.empty() ? 0.0 : seeds.pressure[n], q.j[p], state);
         for (int k = 0; k < q.states; ++k) q.state[k][p] = state[k];

@@ -31,7 +31,7 @@ void Mpm3d::leave() {
     gone.mass_left = status_.mass, gone.energy_left = energy.value();
     account(gone);
     body_.points.resize(0);
-    body_.points.each([](Array& column) { column.shrink_to_fit(); });
+    body_.points.each([](Array& array) { array.shrink_to_fit(); });
     status_.points = 0;
     status_.mass = status_.kinetic = status_.potential = status_.stored = 0.0;
     status_.speeds = status_.volume = status_.max_speed = 0.0;

@@ -24,7 +24,7 @@ void Mpm3d::split() {
         const Index p = s.point, other = q.count();
         q.resize(other + 1);
         body_.gone.push_back(0);
-        q.each([&](Array& column) { column[other] = column[p]; });
+        q.each([&](Array& array) { array[other] = array[p]; });
         q.id[other] = next_id_++;
         if (notes_) births_.push_back({q.id[other], q.id[p]});
         q.mass[p] = q.mass[other] = 0.5 * q.mass[p];

@@ -685,21 +685,21 @@ private:
         return box;
     }
 
-    static void load_all(const Array* columns, int count, Index p, int lanes, Double4* to) {
-        for (int n = 0; n < count; ++n) to[n] = load(columns[n].data() + p, lanes);
+    static void load_all(const Array* arrays, int count, Index p, int lanes, Double4* to) {
+        for (int n = 0; n < count; ++n) to[n] = load(arrays[n].data() + p, lanes);
     }
-    static void store_all(const Double4* from, int count, Index p, int lanes, Array* columns) {
-        for (int n = 0; n < count; ++n) store(columns[n].data() + p, from[n], lanes);
+    static void store_all(const Double4* from, int count, Index p, int lanes, Array* arrays) {
+        for (int n = 0; n < count; ++n) store(arrays[n].data() + p, from[n], lanes);
     }
 
-    /// Now and then reads the columns of the next points ahead (base/touch.h).
+    /// Now and then reads the arrays of the next points ahead (base/touch.h).
     static void read_ahead(const MaterialPoints& q, Index begin, Index p, Index end) {
         constexpr Index kAhead = 128;
         if ((p - begin) % kAhead == 0) touch_points(q, p, std::min(p + kAhead, end));
     }
     [[gnu::noinline]] static void touch_points(const MaterialPoints& q, Index first, Index last) {
-        const auto ahead = [&](const Array* columns, int count) {
-            for (int n = 0; n < count; ++n) touch(columns[n].data() + first, last - first);
+        const auto ahead = [&](const Array* arrays, int count) {
+            for (int n = 0; n < count; ++n) touch(arrays[n].data() + first, last - first);
         };
         ahead(q.x.data(), 3), ahead(q.v.data(), 3), ahead(q.gradient.data(), 9), ahead(q.state.data(), Law::kStates);
         ahead(&q.mass, 1), ahead(&q.rest_volume, 1), ahead(&q.j, 1);

@@ -4,8 +4,8 @@
 
 namespace frana {
 
-/// Columns that were neighbours when this was made. A pair may be torn apart while neither column is half broken. It
-/// has lost contact by the discretisation, not by the material. That is numerical fracture.
+/// Particles that were neighbours when this was made. A pair may be torn apart while neither particle is half broken.
+/// It has lost contact by the discretisation, not by the material. That is numerical fracture.
 class Neighbours {
 public:
     /// Pairs nearer than `reach` [m].
@@ -23,7 +23,7 @@ private:
     std::vector<std::pair<std::int64_t, std::int64_t>> pairs_;  ///< of ids
 };
 
-/// What counts as one piece: columns linked over less than `link` [m], of a damage below `damage`. Together they have
+/// What counts as one piece: particles linked over less than `link` [m], of a damage below `damage`. Together they have
 /// more than `share` of all mass.
 struct PieceRule {
     double link = 1.0, damage = 2.0, share = 0.02;

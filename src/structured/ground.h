@@ -1,5 +1,5 @@
 #pragma once
-// What the ground makes of gravity, in the coordinates in which columns move.
+// What the ground makes of gravity, in the coordinates in which particles move.
 #include <cmath>
 #include <functional>
 
@@ -8,8 +8,8 @@
 
 namespace frana {
 
-/// Gravity at a place [m/s^2]: along the plane of the columns, and across the ground. Also how the ground slopes
-/// against that plane [1]. Columns leave where there is no ground.
+/// Gravity at a place [m/s^2]: along the plane of the particles, and across the ground. Also how the ground slopes
+/// against that plane [1]. Particles leave where there is no ground.
 struct GroundGravity {
     double x = 0.0, y = 0.0, across = constants::kGravity;
     double slope_x = 0.0, slope_y = 0.0;

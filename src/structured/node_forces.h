@@ -1,5 +1,5 @@
 #pragma once
-// What drives and brakes the columns of a node (Real: double) or of four in a row (Double4).
+// What drives and brakes the particles of a node (Real: double) or of four in a row (Double4).
 #include "base/simd.h"
 #include "law/bed/node_friction.h"
 #include "shallow/grid_update_bed.h"
@@ -42,7 +42,7 @@ struct GroundOf {
     return {{a[0], a[1]}, a[2], {a[3], b[0]}, b[1], b[2]};
 }
 
-/// Velocity of a node's columns after the stress of their structure acted for dt.
+/// Velocity of a node's particles after the stress of their structure acted for dt.
 [[gnu::always_inline]] inline FlatOf<double> stressed(const StructuredBody& body, Index k, double mass, double dt) {
     const Deposit& d = body.nodes[k];
     return 1.0 / mass * FlatOf<double>{d.px + dt * d.fx, d.py + dt * d.fy};

@@ -8,7 +8,7 @@
 
 namespace frana {
 
-/// Water has cells around the nodes of the grid; columns at its sides reach nodes beyond them.
+/// Water has cells around the nodes of the grid; particles at its sides reach nodes beyond them.
 bool has_water(const StructuredBody& body, Index k) {
     const Index i = k % body.grid.stride() - kTile, j = k / body.grid.stride() - kTile;
     return i >= 0 && j >= 0 && i < body.grid.nx() && j < body.grid.ny() && body.water->h[k] > body.water->film;
@@ -20,7 +20,7 @@ namespace {
 double water_surface_at(const StructuredBody& body, Index k, double otherwise) {
     const FreeWater& water = *body.water;
     const StructuredBody::Bound& bound = body.bound[k];
-    const double open = body.ground[k].open;  // 0 where no column has been near
+    const double open = body.ground[k].open;  // 0 where no particle has been near
     const double depth =
         open > 0.0 ? (bound.volume - bound.released) / (open * body.grid.cell() * body.grid.cell()) : 0.0;
     return has_water(body, k) ? water.bed[k] + water.h[k] + depth : otherwise;
@@ -45,8 +45,8 @@ double spread_rate(const WaterViscosity& viscosity, const Mixture& mixture, doub
     return viscosity.kinematic * viscosity.profile * mixture.grains() / (total * total);
 }
 
-/// What the columns of a node released in the last step joins the water at `to`. It has the velocity that points
-/// brought the node. The structure's stress acts on what stays bound. At the edge of columns it would speed up thin
+/// What the particles of a node released in the last step joins the water at `to`. It has the velocity that points
+/// brought the node. The structure's stress acts on what stays bound. At the edge of particles it would speed up thin
 /// nodes without limit.
 void release_to(StructuredBody& body, Index k, Index to) {
     FreeWater& water = *body.water;
@@ -76,8 +76,8 @@ Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, con
           StructuredTally& tally) {
     FreeWater& water = *body.water;
     const StructuredBody::Bound& bound = body.bound[k];
-    // Columns fill the open share of the water's cell. There they are as deep as elsewhere, and there alone both hold on to
-    // one another. Momentum is that of the whole cell, so that what one gives the other gets.
+    // Particles fill the open share of the water's cell. There they are as deep as elsewhere, and there alone both hold
+    // on to one another. Momentum is that of the whole cell, so that what one gives the other gets.
     const double area = body.grid.cell() * body.grid.cell(), open = body.ground[k].open;
     const double h = water.h[k], total = met.depth + h, solids = bound.solids / (open * area);
     const double confined = std::max(0.0, met.depth - solids), fluid = confined + h;

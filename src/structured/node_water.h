@@ -1,5 +1,5 @@
 #pragma once
-// What free water and the columns of a node do to one another.
+// What free water and the particles of a node do to one another.
 #include "structured/structured_flow.h"
 
 namespace frana {
@@ -10,7 +10,7 @@ inline double along_ground(const StructuredBody::NodeGround& ground, const Vec2&
     return a.dot(b) + slope.dot(a) * slope.dot(b);
 }
 
-/// A node's columns as they meet its water.
+/// A node's particles as they meet its water.
 struct Met {
     double mass;         ///< without what was released [kg]
     double depth;        ///< of grains and confined water [m]
@@ -21,19 +21,20 @@ struct Met {
 
 /// Whether there is free water at a node.
 bool has_water(const StructuredBody& body, Index k);
-/// A node's columns, without what they released in the last step, and what the water bears of them.
+/// A node's particles, without what they released in the last step, and what the water bears of them.
 Met meet_water(const StructuredBody& body, Index k);
 /// Of grains with their confined water, which has gone from what broke [kg/m^3].
 inline double density_of(const StructuredBody& body, Index k, const Met& met) {
     const double cell = body.grid.cell();
     return met.depth > 0.0 ? met.mass / (body.ground[k].open * cell * cell * met.depth) : body.density;
 }
-/// Drag and virtual mass between a node's columns and its water over a step. It brought the columns from `before` to
+/// Drag and virtual mass between a node's particles and its water over a step. It brought the particles from `before`
+/// to
 /// `driven`. Returns their velocity. What both lose is the impulse times the mean slip.
 Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, const Vec2& driven, double dt,
           StructuredTally& tally);
-/// What the columns released in the last step joins the water, with the velocity that points brought. Nodes beyond the
-/// grid's sides have no water. What is released there joins the nearest node that has, in one order.
+/// What the particles released in the last step joins the water, with the velocity that points brought. Nodes beyond
+/// the grid's sides have no water. What is released there joins the nearest node that has, in one order.
 void release_to_nodes(StructuredBody& body);
 
 }  // namespace frana

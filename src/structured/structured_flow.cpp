@@ -23,10 +23,10 @@ void require_inside(const StructuredSeeds& seeds, const GridGeometry& g) {
     for (std::size_t p = 0; p < seeds.x.size(); ++p) {
         const double x = (seeds.x[p] - g.x0) / g.cell, y = (seeds.y[p] - g.y0) / g.cell;
         expect(x >= 0.0 && y >= 0.0 && x <= static_cast<double>(g.nx) - 1.0 && y <= static_cast<double>(g.ny) - 1.0,
-               "structured columns start in the grid");
+               "structured particles start in the grid");
         expect(seeds.mass[p] > 0.0 && seeds.depth[p] > 0.0 && seeds.cohesion[p] >= 0.0 && seeds.damage[p] >= 0.0 &&
                    seeds.damage[p] <= 1.0,
-               "structured columns have mass, depth, cohesion and damage");
+               "structured particles have mass, depth, cohesion and damage");
     }
 }
 
@@ -79,7 +79,7 @@ void StructuredFlow::place(const StructuredScene& scene) {
         const std::size_t n = static_cast<std::size_t>(p);
         q.x[p] = (seeds.x[n] - g.x0) / g.cell, q.y[p] = (seeds.y[n] - g.y0) / g.cell;
         q.vx[p] = seeds.vx[n], q.vy[p] = seeds.vy[n];
-        for (Array* column : {&q.cxx, &q.cxy, &q.cyx, &q.cyy, &q.xx, &q.yy, &q.xy, &q.strain}) (*column)[p] = 0.0;
+        for (Array* array : {&q.cxx, &q.cxy, &q.cyx, &q.cyy, &q.xx, &q.yy, &q.xy, &q.strain}) (*array)[p] = 0.0;
         q.mass[p] = seeds.mass[n], q.volume[p] = seeds.mass[n] / body_.density;
         q.depth[p] = q.layer[p] = seeds.depth[n];
         q.damage[p] = seeds.damage[n], q.cohesion[p] = seeds.cohesion[n];
@@ -130,7 +130,7 @@ void StructuredFlow::sort() {
     });
     order_.lay_out(body_.active);
     fields_.clear();
-    q.each([&](Array& column) { fields_.push_back(&column); });
+    q.each([&](Array& array) { fields_.push_back(&array); });
     fields_.push_back(&q.id);
     order_.permute(fields_);
     drift_ = 0.0;
@@ -144,13 +144,13 @@ void StructuredFlow::meet(const FreeWater& water) {
     if (status_.step == 0) press(body_);
 }
 
-/// What follows from the tiles that hold columns.
+/// What follows from the tiles that hold particles.
 void StructuredFlow::take_tiles() {
     StructuredPoints& q = body_.points;
     left_ = body_.active.work;
     lists_.list_tiles(body_.grid, body_.active);
     left_.reserve(body_.active.work.capacity());  // grows with the list, not a sort later
-    for (const Index tile : left_) {              // what is not cleared any more must not show when columns return
+    for (const Index tile : left_) {              // what is not cleared any more must not show when particles return
         if (body_.active.in_work[static_cast<std::size_t>(tile)]) continue;
         const Index first = body_.grid.at(body_.grid.tile_i(tile), body_.grid.tile_j(tile));
         for (Index j = 0; j < kTile; ++j) {
@@ -255,7 +255,7 @@ void StructuredFlow::accumulate() {
     update_totals();
     if (all.bad >= 0)
         throw NumericsError(
-            fmt::format("structured columns, step {}, t = {:.6g} s, dt = {:.3g} s: column {} has numbers "
+            fmt::format("structured particles, step {}, t = {:.6g} s, dt = {:.3g} s: particle {} has numbers "
                         "that are not finite; a smaller cfl may help",
                         status_.step, status_.time, status_.dt, body_.points.id[all.bad]));
     status_.mass = all.mass, status_.momentum = all.momentum, status_.kinetic = all.kinetic;
@@ -281,7 +281,7 @@ Vec2 StructuredFlow::position(Index p) const {
 Index StructuredFlow::particle_bytes() const {
     const StructuredPoints& q = body_.points;
     Index sum = allocated(q.id) + order_.bytes();
-    q.each([&](const Array& column) { sum += allocated(column); });
+    q.each([&](const Array& array) { sum += allocated(array); });
     return sum;
 }
 

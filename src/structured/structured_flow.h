@@ -1,5 +1,5 @@
 #pragma once
-// Structured solids on the ground: depth-averaged columns that are elastic, yield and break into grains. The material
+// Structured solids on the ground: depth-averaged particles that are elastic, yield and break into grains. The material
 // point method is explicit, with quadratic B-splines (TPIC). One material, dry or with free water.
 #include <memory>
 #include <optional>
@@ -23,7 +23,7 @@
 
 namespace frana {
 
-/// Columns at the start, equal lengths. They begin without stress but for their weight: a whole block on
+/// Particles at the start, equal lengths. They begin without stress but for their weight: a whole block on
 /// level ground then rests exactly.
 struct StructuredSeeds {
     std::vector<double> x, y;      ///< [m]
@@ -46,12 +46,12 @@ struct StructuredScene {
     GridGeometry grid;
     Ground ground = terrain_ground([](double, double) { return Vec2(0.0, 0.0); });
     double density = 1700.0;  ///< [kg/m^3]
-    ColumnMaterial material;
+    StructuredMaterial material;
     double share = 1.0;                    ///< of the solids that have structure, undamaged [1]
     double gravity = constants::kGravity;  ///< [m/s^2]
     bool hydrostatic = false;  ///< horizontal pressure of grains equals the vertical one, K = 1; otherwise by Rankine's
                                ///< Ka to Kp
-    /// The bed under the grains' surface, on the map, needed when there are grains. None: a plane that the columns'
+    /// The bed under the grains' surface, on the map, needed when there are grains. None: a plane that the particles'
     /// coordinates lie in, and gravity along it by the ground.
     std::function<BedGeometry(const TileGrid&)> bed;
     bool curved = false;  ///< that bed bends, and grains feel it
@@ -87,17 +87,17 @@ struct StructuredTally {
     double kinetic = 0.0, potential = 0.0;   ///< after the step; of the places before it
 };
 
-/// What columns gained and lost since the start, or in a step (mpm/ledger.h).
+/// What particles gained and lost since the start, or in a step (mpm/ledger.h).
 struct StructuredLedger {
     double mass_left = 0.0;      ///< gone through the grid's sides [kg]
     double lost_in_holes = 0.0;  ///< of that, in holes of the terrain [kg]
     double energy_left = 0.0;    ///< carried out: motion along the bed, and height above z = 0 [J]
     double released = 0.0;       ///< water given to the nodes [m^3]
-    double confined_left = 0.0;  ///< water in columns that have left [m^3]
+    double confined_left = 0.0;  ///< water in particles that have left [m^3]
     double friction = 0.0;       ///< lost at the bed [J]
     double obstacle_work = 0.0;  ///< lost to obstacles [J]
     double squeezed = 0.0;       ///< lost by grains as they spread or are squeezed [J]
-    double dragged = 0.0;        ///< lost by columns and water to the drag between them [J]
+    double dragged = 0.0;        ///< lost by particles and water to the drag between them [J]
     double worked = 0.0;         ///< by the strains of the structure: stored, or lost by yielding [J]
     Flat2 momentum_left{0, 0};   ///< carried out [kg m/s]
     StructuredImpulses impulse;
@@ -108,7 +108,7 @@ struct StructuredStatus : Clock, StructuredLedger {
     Index points = 0;
     double mass = 0.0;                          ///< in the grid [kg]
     Vec2 momentum{0, 0}, momentum_given{0, 0};  ///< present, at the start [kg m/s]
-    double kinetic = 0.0;                       ///< sum of m v^2 / 2, in the plane of the columns [J]
+    double kinetic = 0.0;                       ///< sum of m v^2 / 2, in the plane of the particles [J]
     double damage = 0.0;                        ///< mean over the mass [1]
     double max_speed = 0.0;                     ///< [m/s]
     double bed_kinetic = 0.0, potential = 0.0;  ///< of the nodes, along the bed and above z = 0 [J]
@@ -131,10 +131,10 @@ struct StructuredSums {
 struct StructuredBody {
     explicit StructuredBody(const StructuredScene& scene);
     StructuredBody(const StructuredBody&) = delete;
-    Flow flow;  ///< nodes, and the grains' surface on them; its own columns are not used
+    Flow flow;  ///< nodes, and the grains' surface on them; its own particles are not used
     TileGrid& grid = flow.grid;
     ActiveTiles& active = flow.active;
-    ColumnLaw law;
+    StructuredLaw law;
     StructuredPoints points;
     Deposit* nodes = flow.nodes.deposits();      ///< momentum, and the force of the structure's stress
     double* node_mass = flow.nodes.mass.data();  ///< [kg]
@@ -153,7 +153,7 @@ struct StructuredBody {
     LazyArray<GrainPressure> grain_pressure;
     LazyArray<Moved> moved;
     LazyArray<NodeGround> ground;
-    /// What columns are made of, only together with free water [m^3].
+    /// What particles are made of, only together with free water [m^3].
     struct alignas(32) Bound {
         double volume, released, solids, structured;
     };
@@ -167,20 +167,20 @@ struct StructuredBody {
     BedLaw bed_law;            ///< where flow.laws has none
     CreepFilter creep_filter;  ///< of the grains' surface
     double density, share, gravity;
-    bool grains = false;     ///< some column is broken or has grains besides its structure
+    bool grains = false;     ///< some particle is broken or has grains besides its structure
     bool has_exits = false;  ///< some node that was checked has no ground
     bool mapped = false;     ///< coordinates are on the map, and flow has the bed; otherwise they lie in its plane
     bool curved = false;     ///< there, grains feel how the bed bends
 };
 
-/// How long forces act in a step, and how long columns then drift [s]. With grains velocities are half a step behind
+/// How long forces act in a step, and how long particles then drift [s]. With grains velocities are half a step behind
 /// the places (leapfrog), as those of the depth-averaged flow. What is intact begins with a whole step.
 struct StepTimes {
     double velocity_dt, drift;
 };
 
 /// Calls work(grains, water), types that say what there is in a run. They are chosen once a loop, and not for every
-/// column.
+/// particle.
 template <class Work>
 void with_kinds(const StructuredBody& body, Work&& work) {
     const auto with_water = [&](auto grains) {
@@ -202,12 +202,12 @@ void scatter(StructuredBody& body);
 void raise_surface(StructuredBody& body);
 void move_nodes(StructuredBody& body, const StepTimes& times);
 void gather(StructuredBody& body, double dt);
-/// The nodes as the columns are now, without a step: `moved`, and the energies of `tallies`.
+/// The nodes as the particles are now, without a step: `moved`, and the energies of `tallies`.
 void sample_nodes(StructuredBody& body);
-/// Columns without stress but for the weight that the nodes of sample_nodes() leave them.
+/// Particles without stress but for the weight that the nodes of sample_nodes() leave them.
 void press(StructuredBody& body);
 
-/// A body of columns, and its time loop.
+/// A body of particles, and its time loop.
 class StructuredFlow {
 public:
     explicit StructuredFlow(const StructuredScene& scene);
@@ -216,10 +216,10 @@ public:
     void advance(double until);
     /// Length at most of the next step [s].
     double longest_step() const;
-    /// From now on the columns exchange momentum with free water at their nodes, and what breaks releases its own.
+    /// From now on the particles exchange momentum with free water at their nodes, and what breaks releases its own.
     /// Before the first step.
     void meet(const FreeWater& water);
-    /// Brings nodes, and energies of the status, to the columns' present places; changes no column.
+    /// Brings nodes, and energies of the status, to the particles' present places; changes no particle.
     void sample();
     const StructuredStatus& status() const { return status_; }
     const StructuredBody& body() const { return body_; }
@@ -228,7 +228,7 @@ public:
     void count_cpu_time() { timed_.count_cpu_time(); }
     /// Memory that grows with the points, sort buffers included [bytes].
     Index particle_bytes() const;
-    /// Largest speed of columns and the waves on them [m/s].
+    /// Largest speed of particles and the waves on them [m/s].
     double wave() const { return wave_; }
     /// Steps taken so far for each that the depth-averaged flow would need: what elastic waves cost.
     double sub_cycling() const;
@@ -265,7 +265,7 @@ private:
     Ledger<StructuredLedger> since_start_;
     double cfl_, sound_speed_;
     bool hydrostatic_;
-    double wave_ = 0.0;    ///< largest speed with which surfaces and columns run, both ways of the grid at once [m/s]
+    double wave_ = 0.0;    ///< largest speed with which surfaces and particles run, both ways of the grid at once [m/s]
     double signal_ = 0.0;  ///< the same along one way: what the depth-averaged flow's steps go by [m/s]
     double drift_ = 0.0;   ///< since the last sort [cells]
 };

@@ -1,4 +1,4 @@
-// What columns take from the nodes in a step of structured solids, and what they make of it. Four are done at once.
+// What particles take from the nodes in a step of structured solids, and what they make of it. Four are done at once.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +12,7 @@ namespace {
 
 using Moved = StructuredBody::Moved;
 
-/// What a column takes from its nodes, and how it changes there [1/cell].
+/// What a particle takes from its nodes, and how it changes there [1/cell].
 struct Taken {
     Double4 mean, slope_x, slope_y;
 };
@@ -30,7 +30,7 @@ struct Taken {
     return taken;
 }
 
-/// Four columns after a step, number by number.
+/// Four particles after a step, number by number.
 struct Batch {
     Double4 vx, vy, normal_gravity, layer, cxx, cyx, cxy, cyy;
 };
@@ -55,7 +55,7 @@ struct Batch {
     store(ry, y + dt * (b.cyx * x + b.cyy * y), lanes);
 }
 
-/// Stress, damage and the column's own depth, which changes with its area: exp(-div dt) to second order.
+/// Stress, damage and the particle's own depth, which changes with its area: exp(-div dt) to second order.
 /// Returns the work of the strains on the structure [J].
 template <bool kWater, bool kHexagon>
 [[gnu::always_inline]] inline Double4 strain_four(StructuredBody& body, const Batch& b, Index p, int lanes, double dt) {
@@ -67,26 +67,26 @@ template <bool kWater, bool kHexagon>
     const Double4 none = {};
     if (!any(intact)) return none;
     const auto if_intact = [&](Double4 a) { return select(intact, a, none); };
-    ColumnStateOf<Double4> state{{if_intact(load(&q.xx[p], lanes)), if_intact(load(&q.yy[p], lanes)),
-                                  if_intact(load(&q.zz[p], lanes)), if_intact(load(&q.xy[p], lanes))},
-                                 damage,
-                                 load(&q.strain[p], lanes)};
+    StructuredStateOf<Double4> state{{if_intact(load(&q.xx[p], lanes)), if_intact(load(&q.yy[p], lanes)),
+                                      if_intact(load(&q.zz[p], lanes)), if_intact(load(&q.xy[p], lanes))},
+                                     damage,
+                                     load(&q.strain[p], lanes)};
     const auto step =
-        ColumnStepOf<Double4>::of(if_intact(b.cxx), if_intact(b.cxy), if_intact(b.cyx), if_intact(b.cyy), dt);
+        StructuredStepOf<Double4>::of(if_intact(b.cxx), if_intact(b.cxy), if_intact(b.cyx), if_intact(b.cyy), dt);
     Double4 density = all(body.density);
     if constexpr (kWater) density = load(&q.mass[p], lanes) / max(load(&q.volume[p], lanes), all(1e-300));
     const Double4 weight = if_intact(-0.5 * density * b.normal_gravity * depth);
-    const ColumnStressOf<Double4> old = state.stress;
+    const StructuredStressOf<Double4> old = state.stress;
     body.law.update_as<kHexagon>(step, weight, load(&q.cohesion[p], lanes), state);
     store(&q.xx[p], state.stress.xx, lanes), store(&q.yy[p], state.stress.yy, lanes);
     store(&q.zz[p], state.stress.zz, lanes), store(&q.xy[p], state.stress.xy, lanes);
     store(&q.damage[p], state.damage, lanes), store(&q.strain[p], state.strain, lanes);
-    const ColumnStressOf<Double4>& now = state.stress;
+    const StructuredStressOf<Double4>& now = state.stress;
     const Double4 work = (old.xx + now.xx) * step.xx + (old.yy + now.yy) * step.yy + 2.0 * (old.xy + now.xy) * step.xy;
     return (0.5 * body.share) * load(&q.volume[p], lanes) * (1.0 - damage) * work;
 }
 
-/// A column gives away what it released in the last step, and notes what breaking releases in this one.
+/// A particle gives away what it released in the last step, and notes what breaking releases in this one.
 void release(StructuredBody& body, Index p, double damage_before, StructuredSums& sums) {
     StructuredPoints& q = body.points;
     const double gone = q.released[p];
@@ -106,7 +106,7 @@ struct Sums {
     Double4 mass = {}, kinetic = {}, damaged = {}, px = {}, py = {}, stored = {}, worked = {};
     Double4 max_speed2 = {}, max_wave = {}, max_signal = {};
     StructuredSums rare;
-    StructuredSums columns() const {
+    StructuredSums total() const {
         StructuredSums s = rare;
         s.mass = sum(mass), s.kinetic = sum(kinetic), s.damaged = sum(damaged);
         s.momentum = Vec2(sum(px), sum(py)), s.stored = sum(stored), s.worked = sum(worked);
@@ -115,16 +115,16 @@ struct Sums {
     }
 };
 
-/// Elastic energy of the structure of four columns in the plane [J].
+/// Elastic energy of the structure of four particles in the plane [J].
 [[gnu::always_inline]] inline Double4 stored(const StructuredBody& body, Index p, int lanes, Double4 damage) {
     const StructuredPoints& q = body.points;
-    const ColumnMaterial& of = body.law.material();
+    const StructuredMaterial& of = body.law.material();
     const Double4 xx = load(&q.xx[p], lanes), yy = load(&q.yy[p], lanes), xy = load(&q.xy[p], lanes);
     const Double4 twice = xx * xx + yy * yy - (2.0 * of.poisson) * xx * yy + (2.0 * (1.0 + of.poisson)) * xy * xy;
     return (0.5 * body.share / of.young) * load(&q.volume[p], lanes) * (1.0 - damage) * twice;
 }
 
-/// The ground at the node nearest to a column, of the grid's own nodes. Beyond its sides it is that of its edge.
+/// The ground at the node nearest to a particle, of the grid's own nodes. Beyond its sides it is that of its edge.
 const StructuredBody::NodeGround& ground_below(const StructuredBody& body, Index p) {
     const auto nearest = [](double u, Index count) {
         return static_cast<Index>(std::floor(std::clamp(u, 0.0, static_cast<double>(count - 1)) + 0.5));
@@ -133,7 +133,7 @@ const StructuredBody::NodeGround& ground_below(const StructuredBody& body, Index
     return body.ground[body.grid.at(nearest(q.x[p], body.grid.nx()), nearest(q.y[p], body.grid.ny()))];
 }
 
-/// What a column carries out: motion along the bed, and its own height above z = 0 [J].
+/// What a particle carries out: motion along the bed, and its own height above z = 0 [J].
 double energy_of(const StructuredBody& body, Index p) {
     const StructuredPoints& q = body.points;
     const StructuredBody::NodeGround& ground = ground_below(body, p);
@@ -142,7 +142,7 @@ double energy_of(const StructuredBody& body, Index p) {
                         body.gravity * (ground.elevation + 0.5 * std::max(q.depth[p], 0.0)));
 }
 
-/// Columns leave beyond the outer nodes, and where there is no ground: whether this one does, which is then recorded.
+/// Particles leave beyond the outer nodes, and where there is no ground: whether this one does, which is then recorded.
 bool leaves(StructuredBody& body, Index p, StructuredSums& sums) {
     const StructuredPoints& q = body.points;
     const bool inside = q.x[p] >= 0.0 && q.y[p] >= 0.0 && q.x[p] <= static_cast<double>(body.grid.nx()) - 1.0 &&
@@ -158,7 +158,7 @@ bool leaves(StructuredBody& body, Index p, StructuredSums& sums) {
     return true;
 }
 
-/// A column that a step brought into obstacles is put on their nearest face.
+/// A particle that a step brought into obstacles is put on their nearest face.
 void put_on_face(StructuredBody& body, Index p, double deepest) {
     StructuredPoints& q = body.points;
     const GridGeometry& g = body.grid.geometry();
@@ -173,10 +173,10 @@ void put_on_face(StructuredBody& body, Index p, double deepest) {
     }
 }
 
-/// Nodes in an obstacle do not move into it, but a column next to it feels those before it too, and creeps on. It ends at
-/// the nearest face. What was released deep within an obstacle stays there.
+/// Nodes in an obstacle do not move into it, but a particle next to it feels those before it too, and creeps on. It
+/// ends at the nearest face. What was released deep within an obstacle stays there.
 void keep_out(StructuredBody& body, Index p, int lanes) {
-    constexpr double kDeepest = 1.0;  // no column goes farther in a step [cells]
+    constexpr double kDeepest = 1.0;  // no particle goes farther in a step [cells]
     const StructuredPoints& q = body.points;
     const GridGeometry& g = body.grid.geometry();
     const Double4 x = g.x0 + g.cell * load(&q.x[p], lanes), y = g.y0 + g.cell * load(&q.y[p], lanes);
@@ -188,7 +188,7 @@ void keep_out(StructuredBody& body, Index p, int lanes) {
         if (within[n]) put_on_face(body, p + n, kDeepest * g.cell);
 }
 
-/// Sums of four columns, and what bounds the next step.
+/// Sums of four particles, and what bounds the next step.
 [[gnu::always_inline]] inline void count(StructuredBody& body, Index p, int lanes, const Batch& b, Sums& sums) {
     const StructuredPoints& q = body.points;
     const Double4 x = load(&q.x[p], lanes), y = load(&q.y[p], lanes), damage = load(&q.damage[p], lanes),
@@ -212,9 +212,9 @@ void keep_out(StructuredBody& body, Index p, int lanes) {
     sums.max_signal = max(sums.max_signal, select(here, speed + sqrt(b.normal_gravity * high), none));
 }
 
-/// Four columns at once.
+/// Four particles at once.
 template <bool kGrains, bool kWater, bool kHexagon>
-[[gnu::always_inline]] inline void gather_columns(StructuredBody& body, Index p, int lanes, double dt, Sums& sums) {
+[[gnu::always_inline]] inline void gather_particles(StructuredBody& body, Index p, int lanes, double dt, Sums& sums) {
     StructuredPoints& q = body.points;
     const double cells = dt / body.grid.cell();
     const Batch b = take_four(body, p, lanes);
@@ -236,9 +236,9 @@ template <bool kGrains, bool kWater, bool kHexagon>
     count(body, p, lanes, b, sums);
 }
 
-/// Reads ahead (base/touch.h) what a batch of columns changes.
+/// Reads ahead (base/touch.h) what a batch of particles changes.
 template <bool kGrains>
-void touch_columns(const StructuredPoints& q, Index first, Index end) {
+void touch_particles(const StructuredPoints& q, Index first, Index end) {
     const Array* const list[] = {
         &q.x,      &q.y,        &q.vx,  &q.vy,  &q.cxx,  &q.cxy,   &q.cyx,   &q.cyy,    &q.normal_gravity,
         &q.xx,     &q.yy,       &q.zz,  &q.xy,  &q.mass, &q.layer, &q.depth, &q.volume, &q.damage,
@@ -256,11 +256,12 @@ StructuredSums gather_tile(StructuredBody& body, Index n, double dt) {
     for_each_row_of_full(body.grid, body.active, n, [&](Index k, Index count) { touch(body.moved.data() + k, count); });
     for (Index first = body.active.begin[n]; first < end; first += kBatch) {
         const Index last = std::min(first + kBatch, end);
-        touch_columns<kGrains>(body.points, first, last);
-        for_each_four(first, last,
-                      [&](Index p, int lanes) { gather_columns<kGrains, kWater, kHexagon>(body, p, lanes, dt, sums); });
+        touch_particles<kGrains>(body.points, first, last);
+        for_each_four(first, last, [&](Index p, int lanes) {
+            gather_particles<kGrains, kWater, kHexagon>(body, p, lanes, dt, sums);
+        });
     }
-    return sums.columns();
+    return sums.total();
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ struct Standing {
     Vec2 velocity{0, 0};
 };
 
-Standing columns_on(const StructuredBody& body, Index k) {
+Standing particles_on(const StructuredBody& body, Index k) {
     const StructuredBody::Moved& node = body.moved[k];
     const double depth = StructuredMap::depth_of(body, k);
     if (!(depth > 0.0)) return {};
@@ -35,19 +35,19 @@ Standing columns_on(const StructuredBody& body, Index k) {
 }
 
 /// With the water: velocities are those of both masses together.
-Standing with_water(const Standing& columns, const WaterBody& water, double density, Index k) {
+Standing with_water(const Standing& particles, const WaterBody& water, double density, Index k) {
     const double h = water.now.h[k];
-    if (!(h > 0.0)) return columns;
+    if (!(h > 0.0)) return particles;
     const double inertia = density * h;
     const Vec2 v = h > water.film ? Vec2(Vec2(water.now.qx[k], water.now.qy[k]) / h) : Vec2(0, 0);
-    return {columns.depth + h, columns.pressure + density * water.pressing(k, v) * h, columns.inertia + inertia,
-            (columns.inertia * columns.velocity + inertia * v) / (columns.inertia + inertia)};
+    return {particles.depth + h, particles.pressure + density * water.pressing(k, v) * h, particles.inertia + inertia,
+            (particles.inertia * particles.velocity + inertia * v) / (particles.inertia + inertia)};
 }
 
 Standing on_node(const StructuredBody& body, const WaterFlow* water, Index i, Index j) {
     const Index k = body.grid.at(i, j);
-    const Standing columns = StructuredMap::is_in_reach(body, i, j) ? columns_on(body, k) : Standing{};
-    return water ? with_water(columns, water->body(), body.water->by.material.fluid_density, k) : columns;
+    const Standing particles = StructuredMap::is_in_reach(body, i, j) ? particles_on(body, k) : Standing{};
+    return water ? with_water(particles, water->body(), body.water->by.material.fluid_density, k) : particles;
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ Index StructuredMap::fronts(const StructuredBody& body, const WaterFlow* water, 
 }
 
 double StructuredMap::pressing(const StructuredBody& body, Index k) {
-    if (!(body.node_mass[k] > 0.0)) return body.ground[k].across;  // parts of columns around, without a velocity
+    if (!(body.node_mass[k] > 0.0)) return body.ground[k].across;  // parts of particles around, without a velocity
     const double borne = body.water ? meet_water(body, k).support : 0.0;
     return body.moved[k].normal_gravity + borne * body.ground[k].across;
 }

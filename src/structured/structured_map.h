@@ -23,16 +23,16 @@ public:
     /// How fast what moves along the map with (vx, vy) at a node climbs [m/s].
     double climb(Index node, double vx, double vy) const { return vx * path_[node].x + vy * path_[node].y; }
     const NodePeak& peak(Index node) const { return peaks_[node]; }
-    /// Depth of columns on a node [m], also where parts of them reach and none's shape function does. With water it
+    /// Depth of particles on a node [m], also where parts of them reach and none's shape function does. With water it
     /// is spread by shape functions, and nothing lies beyond them.
     static double depth_of(const StructuredBody& body, Index k) {
         if (body.moved[k].depth > 0.0 || !body.grains || body.water) return body.moved[k].depth;
         return body.flow.nodes.column_mass[k] / (body.density * body.flow.area);
     }
-    /// Gravity by which a node's columns press on the bed and on the water that bears a part of them [m/s^2]. It
+    /// Gravity by which a node's particles press on the bed and on the water that bears a part of them [m/s^2]. It
     /// holds on a bend of the bed too.
     static double pressing(const StructuredBody& body, Index k);
-    /// Of a node's columns [kg/m^3]: what breaks loses its confined water.
+    /// Of a node's particles [kg/m^3]: what breaks loses its confined water.
     static double density_of(const StructuredBody& body, Index k);
     /// Whether the node is near material: elsewhere the body's nodes are of another time.
     static bool is_in_reach(const StructuredBody& body, Index i, Index j);
@@ -44,7 +44,7 @@ public:
 private:
     LazyArray<Pair> path_;
     LazyArray<NodePeak> peaks_;
-    std::vector<Index> tiles_;  ///< with columns or water near
+    std::vector<Index> tiles_;  ///< with particles or water near
     std::vector<FlowExtent> of_tile_;
     FlowExtent extent_;
     Index nx_, ny_, stride_;

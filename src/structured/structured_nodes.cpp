@@ -144,7 +144,7 @@ FacesPressed press_on_faces(const StructuredBody& body, Index k, int lane, const
             const Index next = node + side * (axis == 0 ? 1 : up);
             const double beyond = is_blocked(body, next) ? 0.0 : body.ground[next].open;
             const double length = body.ground[node].open - beyond;
-            if (!(length > 0.0) || body.ground[next].open == 0.0) continue;  // 0: no column has come near it
+            if (!(length > 0.0) || body.ground[next].open == 0.0) continue;  // 0: no particle has come near it
             const double normal = length * impulse * (axis == 0 ? pressure.xx : pressure.yy);
             faces.reaction[axis] -= side * normal;
             Vec2 behind = place;
@@ -210,7 +210,7 @@ template <class Real, class Law>
     store_motion(&step.body.moved[k], left, node.across, node.depth);
 }
 
-/// Depth of a node's columns in the dry [m].
+/// Depth of a node's particles in the dry [m].
 template <class Real>
 [[gnu::always_inline]] inline Real dry_depth(const StructuredBody& body, Index k, Real mass, Real open) {
     if (body.grains) return read<Real>(&body.flow.nodes.depth[k]);
@@ -307,13 +307,13 @@ void move_wet(NodeStep<Law>& step, Index k) {
     finish(step, k, ground, node);
 }
 
-/// Whether four nodes in a row may go together: columns at each, and grains inside their flow.
+/// Whether four nodes in a row may go together: particles at each, and grains inside their flow.
 [[gnu::always_inline]] inline bool together(const StructuredBody& body, Index k) {
-    const auto all_have_columns = [&](Index n) { return !any(~(load(&body.node_mass[n]) > 0.0)); };
-    if (!all_have_columns(k)) return false;
+    const auto all_have_particles = [&](Index n) { return !any(~(load(&body.node_mass[n]) > 0.0)); };
+    if (!all_have_particles(k)) return false;
     const Index up = body.grid.stride();
-    return !body.grains || (four_have(&body.flow.nodes.flags[k], kWideX | kWideY, 0) && all_have_columns(k - 1) &&
-                            all_have_columns(k + 1) && all_have_columns(k - up) && all_have_columns(k + up));
+    return !body.grains || (four_have(&body.flow.nodes.flags[k], kWideX | kWideY, 0) && all_have_particles(k - 1) &&
+                            all_have_particles(k + 1) && all_have_particles(k - up) && all_have_particles(k + up));
 }
 
 /// Calls body(first of four nodes in a row) for those of a tile.
@@ -356,7 +356,7 @@ void share_out(StructuredBody& body) {
     });
 }
 
-/// The weight of a node's columns on the bed over that at rest, before share_out(): grains alone feel a bend.
+/// The weight of a node's particles on the bed over that at rest, before share_out(): grains alone feel a bend.
 double weight_on_bend(const StructuredBody& body, Index k, double mass, const Vec2& v) {
     if (!body.curved || !body.grains) return 1.0;
     const SteepBed<double, Curvature::full, false> bed(body.flow, k);

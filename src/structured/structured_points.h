@@ -1,5 +1,5 @@
 #pragma once
-// The material points of structured solids: columns of one solid each, one array per quantity, sorted by
+// The material points of structured solids: particles of one solid each, one array per quantity, sorted by
 // tile.
 #include <array>
 
@@ -7,14 +7,14 @@
 
 namespace frana {
 
-/// Columns on the plane. Positions are in cells from node (0, 0); all else is SI.
+/// Particles on the plane. Positions are in cells from node (0, 0); all else is SI.
 struct StructuredPoints {
     Array x, y;                    ///< position [cells]
     Array vx, vy;                  ///< velocity [m/s]
     Array cxx, cxy, cyx, cyy;      ///< velocity gradient, c_kl = dv_k / dx_l [1/s]
     Array mass;                    ///< [kg]
     Array volume;                  ///< of grains, confined and released water [m^3]
-    Array depth;                   ///< of the column by itself, by the area that it was deformed to [m]
+    Array depth;                   ///< of the particle by itself, by the area that it was deformed to [m]
     Array xx, yy, zz, xy;          ///< stress of the solid, tension positive [Pa]
     Array damage;                  ///< 0 intact, 1 fragmented
     Array strain;                  ///< sum of |strain| so far [1]
@@ -29,7 +29,7 @@ struct StructuredPoints {
 
     Index count() const { return static_cast<Index>(x.size()); }
 
-    /// The one list of floating-point columns, for sorting and growing.
+    /// The one list of floating-point arrays, for sorting and growing.
     template <class Visit>
     void each(Visit&& visit) {
         each_of(*this, visit);
@@ -40,44 +40,44 @@ struct StructuredPoints {
     }
     /// Point p loses half of all that is counted and not shared.
     void halve(Index p) {
-        for (Array* column : {&mass, &volume, &solids, &confined, &released}) (*column)[p] *= 0.5;
+        for (Array* array : {&mass, &volume, &solids, &confined, &released}) (*array)[p] *= 0.5;
     }
     void resize(Index count) {
-        each([&](Array& column) { resize_sparingly(column, static_cast<std::size_t>(count)); });
+        each([&](Array& array) { resize_sparingly(array, static_cast<std::size_t>(count)); });
         resize_sparingly(id, static_cast<std::size_t>(count));
     }
 
 private:
     template <class Self, class Visit>
     static void each_of(Self& s, Visit& visit) {
-        for (auto* column : {&s.x,
-                             &s.y,
-                             &s.vx,
-                             &s.vy,
-                             &s.cxx,
-                             &s.cxy,
-                             &s.cyx,
-                             &s.cyy,
-                             &s.mass,
-                             &s.volume,
-                             &s.depth,
-                             &s.xx,
-                             &s.yy,
-                             &s.zz,
-                             &s.xy,
-                             &s.damage,
-                             &s.strain,
-                             &s.cohesion,
-                             &s.normal_gravity,
-                             &s.layer,
-                             &s.solids,
-                             &s.confined,
-                             &s.released,
-                             &s.r1x,
-                             &s.r1y,
-                             &s.r2x,
-                             &s.r2y})
-            visit(*column);
+        for (auto* array : {&s.x,
+                            &s.y,
+                            &s.vx,
+                            &s.vy,
+                            &s.cxx,
+                            &s.cxy,
+                            &s.cyx,
+                            &s.cyy,
+                            &s.mass,
+                            &s.volume,
+                            &s.depth,
+                            &s.xx,
+                            &s.yy,
+                            &s.zz,
+                            &s.xy,
+                            &s.damage,
+                            &s.strain,
+                            &s.cohesion,
+                            &s.normal_gravity,
+                            &s.layer,
+                            &s.solids,
+                            &s.confined,
+                            &s.released,
+                            &s.r1x,
+                            &s.r1y,
+                            &s.r2x,
+                            &s.r2y})
+            visit(*array);
     }
 };
 

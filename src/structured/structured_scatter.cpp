@@ -1,4 +1,4 @@
-// What columns bring to the nodes in a step of structured solids. Four are done at once, and sums over nodes have one
+// What particles bring to the nodes in a step of structured solids. Four are done at once, and sums over nodes have one
 // order.
 #include <algorithm>
 
@@ -13,7 +13,7 @@ namespace {
 
 using GrainPressure = StructuredBody::GrainPressure;
 
-/// Four numbers of a column on its nodes.
+/// Four numbers of a particle on its nodes.
 template <class Four>
 [[gnu::always_inline]] inline void add_to_nodes(Four* nodes, Index stride, const Reach& r, Double4 k) {
     Four* first = nodes + r.node;
@@ -23,7 +23,7 @@ template <class Four>
     }
 }
 
-/// What a column is made of.
+/// What a particle is made of.
 Double4 bound_of(const StructuredBody& body, Index p) {
     const StructuredPoints& q = body.points;
     const double solids = q.solids[p];
@@ -34,7 +34,7 @@ Double4 bound_of(const StructuredBody& body, Index p) {
     return {load(&q.r1x[p], lanes), load(&q.r1y[p], lanes), load(&q.r2x[p], lanes), load(&q.r2y[p], lanes)};
 }
 
-/// V s sigma / cell of four columns [N], s the share that is whole.
+/// V s sigma / cell of four particles [N], s the share that is whole.
 [[gnu::always_inline]] inline PlaneOf<Double4> internal_force_of(const StructuredBody& body, Index p, int lanes,
                                                                  Double4 intact) {
     const StructuredPoints& q = body.points;
@@ -42,7 +42,8 @@ Double4 bound_of(const StructuredBody& body, Index p) {
     return {scale * load(&q.xx[p], lanes), scale * load(&q.yy[p], lanes), scale * load(&q.xy[p], lanes)};
 }
 
-/// What the grains of four columns give their nodes, column by column: m (1 - f) K, m (1 - f). False if none has any.
+/// What the grains of four particles give their nodes, particle by particle: m (1 - f) K, m (1 - f). False if none has
+/// any.
 [[gnu::always_inline]] inline bool grain_pressures(const StructuredBody& body, Index p, int lanes, Double4 grains,
                                                    Double4 thrust[4]) {
     if (!any(grains != 0.0)) return false;
@@ -58,7 +59,7 @@ Double4 bound_of(const StructuredBody& body, Index p) {
     return true;
 }
 
-/// The columns of four points on the nodes, from their sub-points. What was released is water already.
+/// The mass of four particles on the nodes, from their sub-points. What was released is water already.
 template <bool kWater>
 [[gnu::always_inline]] inline void spread(StructuredBody& body, Index p, int lanes, bool at_side, Double4 x, Double4 y,
                                           Double4 mass, const Domains& r) {
@@ -66,14 +67,14 @@ template <bool kWater>
     if constexpr (kWater) mass = body.density * (load(&q.volume[p], lanes) - load(&q.released[p], lanes));
     if (!at_side && spread_four(body.flow, body.flow.nodes.column_mass.data(), lanes, x, y, mass, r)) return;
     for (int n = 0; n < lanes; ++n)
-        spread_column<Quadratic>(body.flow, body.flow.nodes.column_mass.data(), {x[n], y[n], mass[n]},
-                                 edges_of(q, p + n));
+        spread_particle<Quadratic>(body.flow, body.flow.nodes.column_mass.data(), {x[n], y[n], mass[n]},
+                                   edges_of(q, p + n));
 }
 
-/// Four columns at once.
+/// Four particles at once.
 template <bool kGrains, bool kWater>
-[[gnu::always_inline]] inline void scatter_columns(StructuredBody& body, Index p, int lanes, bool at_side,
-                                                   StencilMarks& marks) {
+[[gnu::always_inline]] inline void scatter_particles(StructuredBody& body, Index p, int lanes, bool at_side,
+                                                     StencilMarks& marks) {
     const StructuredPoints& q = body.points;
     const Index stride = body.grid.stride();
     const Double4 x = load(&q.x[p], lanes), y = load(&q.y[p], lanes), m = load(&q.mass[p], lanes);
@@ -103,9 +104,9 @@ template <bool kGrains, bool kWater>
             add_to_nodes(body.bound.data(), stride, Reach(sx, sy, stride, n), bound_of(body, p + n));
 }
 
-/// Reads ahead (base/touch.h) what a batch of columns brings.
+/// Reads ahead (base/touch.h) what a batch of particles brings.
 template <bool kGrains>
-void touch_columns(const StructuredPoints& q, Index first, Index end) {
+void touch_particles(const StructuredPoints& q, Index first, Index end) {
     const Array* const list[] = {
         &q.x,  &q.y,  &q.mass,           &q.vx,    &q.vy,  &q.cxx, &q.cxy, &q.cyx, &q.cyy, &q.damage, &q.volume, &q.xx,
         &q.yy, &q.xy, &q.normal_gravity, &q.layer, &q.r1x, &q.r1y, &q.r2x, &q.r2y};
@@ -133,9 +134,9 @@ void scatter_tile(StructuredBody& body, Index n) {
     touch_nodes<kGrains>(body, n);
     for (Index first = body.active.begin[n]; first < end; first += kBatch) {
         const Index last = std::min(first + kBatch, end);
-        touch_columns<kGrains>(body.points, first, last);
+        touch_particles<kGrains>(body.points, first, last);
         for_each_four(first, last,
-                      [&](Index p, int lanes) { scatter_columns<kGrains, kWater>(body, p, lanes, at_side, marks); });
+                      [&](Index p, int lanes) { scatter_particles<kGrains, kWater>(body, p, lanes, at_side, marks); });
     }
     if constexpr (kGrains) body.flow.reach[tile] = marks.reach(kReachBefore, kReachAfter);
 }

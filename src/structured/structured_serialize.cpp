@@ -1,4 +1,4 @@
-// The state of structured columns between two steps, as it is serialized. It is the columns in their order with the
+// The state of structured particles between two steps, as it is serialized. It is the particles in their order with the
 // tiles they are sorted by, and the sums of the run. Nodes start empty in every step.
 #include "mpm/stored_points.h"
 #include "structured/structured_flow.h"

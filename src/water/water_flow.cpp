@@ -76,7 +76,7 @@ std::optional<bed::LawTable> laws_of(const WaterScene& scene) {
 }  // namespace
 
 void WaterLedger::add(const WaterLedger& o, double share) {
-    released += share * o.released, columns += share * o.columns;
+    released += share * o.released, particles += share * o.particles;
     rained += share * o.rained, infiltrated += share * o.infiltrated, left += share * o.left;
     entered += share * o.entered, fed += share * o.fed;
     momentum_left += share * o.momentum_left, momentum_infiltrated += share * o.momentum_infiltrated;
@@ -317,9 +317,9 @@ void WaterFlow::take_changes(const std::vector<Index>& tiles) {
     const Vec2 momentum = status_.momentum;
     for (std::size_t n = 0; n < body_.work.size(); ++n) body_.sums[n] = tile_sums(body_, body_.work[n]);
     take(summed());
-    WaterLedger from_columns;
-    from_columns.released = status_.volume - volume, from_columns.columns = status_.momentum - momentum;
-    status_.ledger = since_start_.add(from_columns);
+    WaterLedger from_particles;
+    from_particles.released = status_.volume - volume, from_particles.particles = status_.momentum - momentum;
+    status_.ledger = since_start_.add(from_particles);
 }
 
 double WaterFlow::due_so_far() const {
@@ -372,7 +372,7 @@ double WaterFlow::volume_residual() const {
 Vec2 WaterFlow::momentum_residual() const {
     const WaterLedger& l = status_.ledger;
     return status_.momentum + l.momentum_left + l.momentum_infiltrated - status_.momentum_given - l.ground - l.walls -
-           l.friction - l.columns;
+           l.friction - l.particles;
 }
 
 }  // namespace frana

@@ -1,5 +1,5 @@
 #pragma once
-// Free water on the grid of the columns: the shallow-water equations over bed and confined mass. The finite volume
+// Free water on the grid of the particles: the shallow-water equations over bed and confined mass. The finite volume
 // scheme is of second order, with lakes at rest and positive depths. One cell around each node.
 #include <algorithm>
 #include <array>
@@ -90,8 +90,8 @@ struct WaterLedger {
     double entered = 0.0;                                   ///< from a lake beyond sides
     double fed = 0.0;                                       ///< by sources
     Flat2 momentum_left{0, 0}, momentum_infiltrated{0, 0};  ///< carried out, less what entered brought
-    double released = 0.0;                                  ///< given by columns
-    Flat2 columns{0, 0};                                    ///< of what columns released, and their drag
+    double released = 0.0;                                  ///< given by particles
+    Flat2 particles{0, 0};                                  ///< of what particles released, and their drag
     Flat2 ground{0, 0};                                     ///< force of bed and confined mass
     Flat2 walls{0, 0};                                      ///< force of walls, and of the water beyond open sides
     Flat2 friction{0, 0};                                   ///< at the bed, and what films lose that stop
@@ -201,13 +201,13 @@ public:
         const Index k = body_.grid.at(i, j);
         body_.share[k] = share, body_.bound_x[k] = velocity.x(), body_.bound_y[k] = velocity.y();
     }
-    /// Lets columns change depth and discharge between steps, and shows them the bed; take_changes() follows.
+    /// Lets particles change depth and discharge between steps, and shows them the bed; take_changes() follows.
     void lend(FreeWater& to) {
         to.h = body_.now.h.data(), to.qx = body_.now.qx.data(), to.qy = body_.now.qy.data();
         to.bed = body_.bed.data(), to.film = body_.film, to.friction = body_.friction;
         to.coefficients = body_.coefficient.view(), to.viscosity = body_.viscosity;
     }
-    /// Takes up what columns on these tiles (ascending) changed: status and ledger have it from now on.
+    /// Takes up what particles on these tiles (ascending) changed: status and ledger have it from now on.
     void take_changes(const std::vector<Index>& tiles);
     /// Saves the state between two steps, or restores it with all its bits, in a flow of the same scene. Confined mass
     /// is not part of it.

@@ -11,7 +11,7 @@ int main() {
     scene.bed = frana::Raster::filled({60, 12, 0.0, 0.0, 1.0}, 0.0);
     for (frana::Index n = 0; n < 60 * 12; ++n) scene.bed.values[n] = 30.0 - 0.5 * (n % 60);
     frana::Seeds& s = scene.particles;
-    for (int n = 0; n < 400; ++n) {  // 10 m x 10 m, 1 m deep, four columns a cell
+    for (int n = 0; n < 400; ++n) {  // 10 m x 10 m, 1 m deep, four particles a cell
         s.x.push_back(5.25 + 0.5 * (n % 20)), s.y.push_back(0.75 + 0.5 * (n / 20)), s.size.push_back(0.5);
         s.depth.push_back(1.0), s.volume.push_back(0.25), s.vx.push_back(0.0), s.vy.push_back(0.0);
     }

@@ -48,7 +48,7 @@ Scene block(const CaseFile& file, double slope) {
     return scene;
 }
 
-/// Means over all columns: place along the map [m], speed along the bed [m/s].
+/// Means over all particles: place along the map [m], speed along the bed [m/s].
 struct Mean {
     double x = 0.0, speed = 0.0;
 };

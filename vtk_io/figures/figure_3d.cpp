@@ -32,7 +32,7 @@ Subjects subjects_of(const Figure3d& figure) {
                 subjects.barriers.push_back(piece.corners.back());
     std::vector<Vec3> all;
     for (const auto& piece : figure.moment.material)
-        if (!piece.is_column && holds(box, piece.place)) all.push_back(piece.place + Vec3(0, 0, piece.size));
+        if (!piece.is_particle && holds(box, piece.place)) all.push_back(piece.place + Vec3(0, 0, piece.size));
     for (std::size_t k = 0; k < all.size(); k += all.size() / kMost + 1) subjects.points.push_back(all[k]);
     return subjects;
 }

@@ -29,16 +29,16 @@ struct Figure3d {
 /// What counts besides is how much the ground hides.
 ViewAngles3d best_view(const Figure3d& figure);
 
-/// The block of terrain in view with all points as balls of their size in the colours of their speed. Columns are balls
-/// on their surface. Barriers have the colours of the pressure on them. The struck faces of the most loaded one are
-/// shown by themselves, for there the points are in front. False with a reason when there is no renderer (no file is
-/// made); UserError when the file cannot be written.
+/// The block of terrain in view with all points as balls of their size in the colours of their speed. Particles are
+/// balls on their surface. Barriers have the colours of the pressure on them. The struck faces of the most loaded one
+/// are shown by themselves, for there the points are in front. False with a reason when there is no renderer (no file
+/// is made); UserError when the file cannot be written.
 bool render_3d(const Figure3d& figure, const std::filesystem::path& png, std::string& why_not);
 
 /// The vertical section along the flow through the middle of what happens. It shows ground, barriers with the pressure
-/// on their sides there, and columns as bars. Points are no further from the plane than twice their typical size (about
-/// a cell of their grid). Heights and lengths have one scale. False with a reason when no point is near or pictures are
-/// switched off; else as above.
+/// on their sides there, and particles as bars. Points are no further from the plane than twice their typical size
+/// (about a cell of their grid). Heights and lengths have one scale. False with a reason when no point is near or
+/// pictures are switched off; else as above.
 bool render_section(const Figure3d& figure, const std::filesystem::path& png, std::string& why_not);
 
 }  // namespace frana

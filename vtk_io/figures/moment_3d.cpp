@@ -34,7 +34,7 @@ std::array<double, 4> without_outermost(const std::vector<Moment3d::Piece>& mate
     for (int axis = 0; axis < 2; ++axis) {
         std::vector<double> places;
         for (const auto& piece : material)
-            if (!piece.is_column) places.push_back(piece.place[axis]);
+            if (!piece.is_particle) places.push_back(piece.place[axis]);
         const auto a = static_cast<std::size_t>(axis);
         box[a] = percentile(places, kLeftOut);
         box[a + 2] = percentile(places, 1.0 - kLeftOut);
@@ -54,13 +54,13 @@ const BarrierSolid* Moment3d::most_loaded() const {
 }
 
 Moment3d moment_3d(const LoadedParticles& particles, std::vector<BarrierSolid> barriers) {
-    const auto column = [&](const char* name) -> const double* {
-        const auto found = particles.columns.find(name);
-        return found == particles.columns.end() || found->second.empty() ? nullptr : found->second.data();
+    const auto array = [&](const char* name) -> const double* {
+        const auto found = particles.arrays.find(name);
+        return found == particles.arrays.end() || found->second.empty() ? nullptr : found->second.data();
     };
-    const double *position = column("position"), *volume = column("volume"), *speed = column("speed"),
-                 *velocity = column("velocity"), *model = column("model"), *depth = column("depth"),
-                 *ground = column("elevation");
+    const double *position = array("position"), *volume = array("volume"), *speed = array("speed"),
+                 *velocity = array("velocity"), *model = array("model"), *depth = array("depth"),
+                 *ground = array("elevation");
     if (particles.count > 0 && (!position || !volume || (!speed && !velocity)))
         throw UserError("the frames hold no volume or no speed of the points; add them to output.fields and run again");
     Moment3d moment;
@@ -74,11 +74,11 @@ Moment3d moment_3d(const LoadedParticles& particles, std::vector<BarrierSolid> b
         const Vec3 v = velocity ? Vec3(velocity[3 * k], velocity[3 * k + 1], velocity[3 * k + 2]) : Vec3(0, 0, 0);
         piece.speed = speed ? speed[k] : v.norm();
         piece.ground = ground ? ground[k] : piece.place.z();
-        piece.is_column = model && model[k] == 0.0;
-        const bool flat = piece.is_column && depth && depth[k] > 0.0;
+        piece.is_particle = model && model[k] == 0.0;
+        const bool flat = piece.is_particle && depth && depth[k] > 0.0;
         piece.size = flat ? std::sqrt(volume[k] / depth[k]) : std::cbrt(volume[k]);
         moment.material.push_back(piece);
-        if (piece.is_column) continue;
+        if (piece.is_particle) continue;
         sizes.push_back(piece.size);
         moment.momentum += volume[k] * v;
         moment.middle += volume[k] * piece.place;
@@ -93,7 +93,7 @@ void Shared3d::add(const Moment3d& moment) {
     const auto hold = [&](const Box& box) { seen_ = seen_ ? united(*seen_, box) : box; };
     std::vector<double> speeds;
     for (const auto& piece : moment.material)
-        if (!piece.is_column) speeds.push_back(piece.speed);
+        if (!piece.is_particle) speeds.push_back(piece.speed);
     if (!speeds.empty()) {
         hold(without_outermost(moment.material));
         fastest_ = std::max(fastest_, percentile(speeds, 0.995));

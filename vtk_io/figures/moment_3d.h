@@ -13,11 +13,11 @@ namespace frana {
 struct Moment3d {
     double time = 0.0;  ///< [s]
     struct Piece {
-        Vec3 place{0, 0, 0};  ///< of a column on its surface [m]
-        double size = 0.0;    ///< edge of a cube as large as a point, width of a column [m]
+        Vec3 place{0, 0, 0};  ///< of a particle on its surface [m]
+        double size = 0.0;    ///< edge of a cube as large as a point, width of a particle [m]
         double speed = 0.0;   ///< [m/s]
         double ground = 0.0;  ///< elevation of the bed below [m]
-        bool is_column = false;
+        bool is_particle = false;
     };
     std::vector<Piece> material;
     Vec3 momentum{0, 0, 0};     ///< of the 3D points, for a density of 1 [m4/s]

@@ -69,7 +69,7 @@ private:
     void choose_material() {
         for (const Piece& piece : figure_.moment.material) {
             const Vec2 p = piece.place.head<2>();
-            const double reach = piece.is_column ? 0.5 * piece.size : 2.0 * figure_.moment.typical_size;
+            const double reach = piece.is_particle ? 0.5 * piece.size : 2.0 * figure_.moment.typical_size;
             const double s = plane_.distance(p);
             if (std::abs(plane_.off_plane(p)) <= reach && s >= 0.0 && s <= plane_.length) near_.push_back(&piece);
         }
@@ -226,7 +226,7 @@ private:
         for (const Piece* piece : near_) {
             const double s = plane_.distance(piece->place.head<2>());
             const Colour colour = colours_.of_speed(piece->speed);
-            if (piece->is_column) {
+            if (piece->is_particle) {
                 const Vec2 a = pixel(s - 0.5 * piece->size, piece->ground),
                            b = pixel(s + 0.5 * piece->size, piece->place.z());
                 canvas.fill(Rectangle{a.x(), a.y(), b.x(), b.y()}, colour);

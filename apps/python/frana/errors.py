@@ -2,7 +2,7 @@
 import re
 
 _PLACED = re.compile(r"(?:(?P<file>.*?)(?::(?P<line>\d+))?: |--set )(?P<key>[a-z_0-9]+(?:\.[a-z_0-9]+)*): (?P<sentence>.*)", re.S)
-_POINT = re.compile(r"point at \(([^)]*)\)|node \(([^)]*)\)|column (\d+)")
+_POINT = re.compile(r"point at \(([^)]*)\)|node \(([^)]*)\)|particle (\d+)")
 
 
 class Error(Exception):
@@ -58,7 +58,7 @@ class NumericsError(Error):
     time : float or None
         [s]
     point : tuple of float or None
-        Place on the map, in 3D with its elevation [m]; of free water the node's numbers, of columns their id.
+        Place on the map, in 3D with its elevation [m]; of free water the node's numbers, of particles their id.
     value : float or None
         The depth there [m].
     """

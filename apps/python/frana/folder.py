@@ -9,41 +9,41 @@ from .errors import DataError
 from .nodes import Nodes, Points
 
 
-class Columns(Mapping):
+class Arrays(Mapping):
     """Arrays by name, with their units."""
 
-    def __init__(self, columns):
-        self._columns = columns
+    def __init__(self, arrays):
+        self._arrays = arrays
 
     def __getitem__(self, name):
-        return self._columns[name][0]
+        return self._arrays[name][0]
 
     def __iter__(self):
-        return iter(self._columns)
+        return iter(self._arrays)
 
     def __len__(self):
-        return len(self._columns)
+        return len(self._arrays)
 
     def unit(self, name):
-        return self._columns[name][1]
+        return self._arrays[name][1]
 
 
-class StoredGrid(Nodes, Columns):
+class StoredGrid(Nodes, Arrays):
     """Fields of nodes, of the shape (ny, nx) or (ny, nx, components); row 0 is the southernmost."""
 
-    def __init__(self, columns, geometry, crs):
-        super().__init__(columns)
+    def __init__(self, arrays, geometry, crs):
+        super().__init__(arrays)
         self._of_nodes, self._crs = geometry, crs
 
     def _geometry(self):
         return self._of_nodes
 
 
-class StoredParticles(Points, Columns):
+class StoredParticles(Points, Arrays):
     """Fields of particles, of the shape (n,) or (n, components)."""
 
-    def __init__(self, columns, crs):
-        super().__init__(columns)
+    def __init__(self, arrays, crs):
+        super().__init__(arrays)
         self._crs = crs
 
 
@@ -68,15 +68,15 @@ class StoredFrame:
     @property
     def grid(self):
         if self._grid is None:
-            _, geometry, columns = _frana.grid_frame(self._folder, self.number)
-            self._grid = StoredGrid(columns, geometry, _frana.crs_in(self._folder))
+            _, geometry, arrays = _frana.grid_frame(self._folder, self.number)
+            self._grid = StoredGrid(arrays, geometry, _frana.crs_in(self._folder))
         return self._grid
 
     @property
     def particles(self):
         if self._particles is None:
-            columns = _frana.particle_frame(self._folder, self.number)[1]
-            self._particles = StoredParticles(columns, _frana.crs_in(self._folder))
+            arrays = _frana.particle_frame(self._folder, self.number)[1]
+            self._particles = StoredParticles(arrays, _frana.crs_in(self._folder))
         return self._particles
 
     def __repr__(self):

@@ -56,9 +56,9 @@ std::vector<Gate> gates(const Report& report) {
         {"3D points, Drucker-Prager, one thread [ns]", 150, 100, false, ns(one("solid_flow_drucker_prager"))},
         {"3D points, fluid: two threads over one (wall)", 1.7, 1.9, kAtLeast,
          speed_up(one("solid_flow"), find(report, "solid_flow", 0, 2))},
-        {"structured columns, elastic, over depth-averaged", 1.6, 1.2, false, over_flow("structured/elastic")},
-        {"structured columns, breaking, over depth-averaged", 1.6, 1.2, false, over_flow("structured/breaking")},
-        {"structured columns, grains, over depth-averaged", 1.6, 1.2, false, over_flow("structured/grains")},
+        {"structured particles, elastic, over depth-averaged", 1.6, 1.2, false, over_flow("structured/elastic")},
+        {"structured particles, breaking, over depth-averaged", 1.6, 1.2, false, over_flow("structured/breaking")},
+        {"structured particles, grains, over depth-averaged", 1.6, 1.2, false, over_flow("structured/grains")},
     };
 }
 

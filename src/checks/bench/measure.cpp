@@ -7,7 +7,7 @@
 #include "checks/bench/team_clock.h"
 #include "checks/bench/traffic.h"
 #include "coupling/structured_run.h"
-#include "coupling/walled_columns.h"
+#include "coupling/walled_particles.h"
 #include "shallow/depth_averaged.h"
 
 namespace frana::bench {
@@ -33,33 +33,33 @@ public:
         if (scene.barriers.empty())
             alone_ = std::make_unique<DepthAveraged>(scene);
         else
-            among_houses_ = std::make_unique<WalledColumns>(scene);
-        columns().count_cpu_time();
+            among_houses_ = std::make_unique<WalledParticles>(scene);
+        depth_averaged().count_cpu_time();
     }
 
     void advance() { whole().advance(std::numeric_limits<double>::max()); }
-    Index particles() const { return columns().status().particles; }
-    Index steps() const { return columns().status().step; }
+    Index particles() const { return depth_averaged().status().particles; }
+    Index steps() const { return depth_averaged().status().step; }
     Phases timings() const { return whole().timings(); }
-    Traffic traffic(const std::string& phase) const { return traffic_of(phase, columns().flow()); }
-    Index bytes() const { return columns().particle_bytes(); }
-    std::uint64_t hash() const { return hash_of(columns().flow().columns); }
+    Traffic traffic(const std::string& phase) const { return traffic_of(phase, depth_averaged().flow()); }
+    Index bytes() const { return depth_averaged().particle_bytes(); }
+    std::uint64_t hash() const { return hash_of(depth_averaged().flow().particles); }
     /// Nodes that points reach: those that the passes visit while nothing sleeps.
     double nodes() const {
-        const Flow& flow = columns().flow();
+        const Flow& flow = depth_averaged().flow();
         Index groups = 0;
         for (const Index tile : flow.active.work) groups += __builtin_popcountll(flow.in_reach[tile]);
         return 4.0 * static_cast<double>(groups);
     }
 
 private:
-    DepthAveraged& columns() const { return alone_ ? *alone_ : among_houses_->columns(); }
+    DepthAveraged& depth_averaged() const { return alone_ ? *alone_ : among_houses_->particles(); }
     Simulation& whole() const {
         if (alone_) return *alone_;
         return *among_houses_;
     }
     std::unique_ptr<DepthAveraged> alone_;
-    std::unique_ptr<WalledColumns> among_houses_;
+    std::unique_ptr<WalledParticles> among_houses_;
 };
 
 /// The 3D solver.
@@ -83,7 +83,7 @@ private:
     Mpm3d flow_;
 };
 
-/// The solver of structured columns, alone or with free water.
+/// The solver of structured particles, alone or with free water.
 class Structured {
 public:
     explicit Structured(const Scene& scene) {
@@ -116,7 +116,7 @@ public:
     }
 
 private:
-    const StructuredFlow& flow() const { return both_ ? both_->columns() : *alone_; }
+    const StructuredFlow& flow() const { return both_ ? both_->structured() : *alone_; }
     std::unique_ptr<StructuredFlow> alone_;
     std::unique_ptr<TwoPhaseFlow> both_;
 };
@@ -181,7 +181,7 @@ public:
     }
 
 private:
-    /// Advances, and returns the particle-steps that they were. One may be many steps, of columns with water.
+    /// Advances, and returns the particle-steps that they were. One may be many steps, of particles with water.
     double advance(int times) {
         double done = 0.0;
         for (int n = 0; n < times; ++n) {
@@ -203,8 +203,8 @@ class Hash {
 public:
     void mix(std::uint64_t bits) { value_ = (value_ ^ bits) * 0x100000001b3u; }
     template <class Array>
-    void mix_all(const Array& column) {
-        for (const double value : column) {
+    void mix_all(const Array& array) {
+        for (const double value : array) {
             std::uint64_t bits;
             std::memcpy(&bits, &value, sizeof bits);
             mix(bits);
@@ -241,17 +241,17 @@ std::vector<Cost> measure_in_turns(const std::vector<Scene>& scenes, const Plan&
     return costs;
 }
 
-std::uint64_t hash_of(const Columns& columns) {
+std::uint64_t hash_of(const Particles& particles) {
     Hash hash;
-    columns.each([&](const auto& column) { hash.mix_all(column); });
-    hash.mix_ids(columns.id);
+    particles.each([&](const auto& array) { hash.mix_all(array); });
+    hash.mix_ids(particles.id);
     return hash.value();
 }
 
 std::uint64_t hash_of(const MaterialPoints& points) {
     Hash hash;
-    const auto mix = [&](const auto& columns) {
-        for (const Array& column : columns) hash.mix_all(column);
+    const auto mix = [&](const auto& arrays) {
+        for (const Array& array : arrays) hash.mix_all(array);
     };
     mix(points.x), mix(points.v), mix(points.gradient), mix(points.state);
     hash.mix_all(points.j);
@@ -261,7 +261,7 @@ std::uint64_t hash_of(const MaterialPoints& points) {
 
 std::uint64_t hash_of(const StructuredPoints& points) {
     Hash hash;
-    points.each([&](const Array& column) { hash.mix_all(column); });
+    points.each([&](const Array& array) { hash.mix_all(array); });
     hash.mix_ids(points.id);
     return hash.value();
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "scene/scene.h"
-#include "shallow/columns.h"
+#include "shallow/particles.h"
 #include "solid3d/mpm3d.h"
 #include "structured/structured_points.h"
 
@@ -45,13 +45,13 @@ struct Cost {
 /// Runs the scene and times it. From then on OpenMP uses plan.threads threads.
 Cost measure(const Scene& scene, const Plan& plan);
 /// The scenes in turns, a window each. Other work of the machine meets all alike, and the fastest windows can be
-/// compared with one another. With a structure a scene's steps are those of its columns.
+/// compared with one another. With a structure a scene's steps are those of its particles.
 std::vector<Cost> measure_in_turns(const std::vector<Scene>& scenes, const Plan& plan);
 /// The same for 3D points. They are sorted when they have moved far enough, which few windows see.
 Cost measure(const SolidScene& scene, const Plan& plan);
 
-/// Of every bit of every column, in storage order. It is FNV-1a (Fowler, Noll and Vo 1991), on 8 bytes at a time.
-std::uint64_t hash_of(const Columns& columns);
+/// Of every bit of every array, in storage order. It is FNV-1a (Fowler, Noll and Vo 1991), on 8 bytes at a time.
+std::uint64_t hash_of(const Particles& particles);
 std::uint64_t hash_of(const MaterialPoints& points);
 std::uint64_t hash_of(const StructuredPoints& points);
 

@@ -5,21 +5,21 @@
 
 namespace frana::bench {
 
-const char* name_of(ColumnsThat what) {
+const char* name_of(ParticlesThat what) {
     switch (what) {
-        case ColumnsThat::hold:
+        case ParticlesThat::hold:
             return "structured/elastic";
-        case ColumnsThat::break_up:
+        case ParticlesThat::break_up:
             return "structured/breaking";
-        case ColumnsThat::are_grains:
+        case ParticlesThat::are_grains:
             return "structured/grains";
-        case ColumnsThat::drain:
+        case ParticlesThat::drain:
             return "mixture";
     }
-    throw InternalError("unknown columns");
+    throw InternalError("unknown particles");
 }
 
-Scene structured_blob(ColumnsThat what, Index particles) {
+Scene structured_blob(ParticlesThat what, Index particles) {
     Blob blob;
     blob.particles = particles;
     blob.rheology = false;
@@ -29,9 +29,9 @@ Scene structured_blob(ColumnsThat what, Index particles) {
     structure.material.young = 50e6;  // sound ten times as fast as what it carries
     structure.material.critical_strain = 0.1;
     // The blob's spreading alone, 0.3 to 3 % a second, takes 1 kPa to the yield surface within the first window.
-    structure.cohesion = what == ColumnsThat::hold ? 1e9 : 1e3;
-    structure.share = what == ColumnsThat::are_grains ? 0.0 : 1.0;
-    if (what == ColumnsThat::drain) {
+    structure.cohesion = what == ParticlesThat::hold ? 1e9 : 1e3;
+    structure.share = what == ParticlesThat::are_grains ? 0.0 : 1.0;
+    if (what == ParticlesThat::drain) {
         structure.confined = 0.2;
         scene.density = 1900.0;
         WaterPhase water;

@@ -38,8 +38,8 @@ Group with_and_without(Index particles) {
     group.add("depth_averaged_in_turns", full);
     group.add("depth_averaged_bare", bare);
     group.add("depth_averaged_level", level);
-    for (const ColumnsThat what :
-         {ColumnsThat::hold, ColumnsThat::break_up, ColumnsThat::are_grains, ColumnsThat::drain}) {
+    for (const ParticlesThat what :
+         {ParticlesThat::hold, ParticlesThat::break_up, ParticlesThat::are_grains, ParticlesThat::drain}) {
         group.models.push_back(name_of(what));
         group.scenes.push_back(structured_blob(what, particles));
     }

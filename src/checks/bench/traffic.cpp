@@ -8,7 +8,7 @@ constexpr double kNode4 = 32.0;                ///< Deposit or Motion, read
 constexpr double kPlaced = 3.0, kHeld = 11.0;  ///< numbers of a point: place and mass; what it carries (Carried)
 
 /// Share of a double that a number takes which points carry.
-double held(const Flow& flow) { return flow.columns.single ? 0.5 : 1.0; }
+double held(const Flow& flow) { return flow.particles.single ? 0.5 : 1.0; }
 
 double hessian(const Flow& flow) { return flow.bed.hxx ? 3.0 * kRead : 0.0; }
 double slopes(const Flow& flow) { return flow.steep ? 2.0 * kRead : 0.0; }

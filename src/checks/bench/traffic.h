@@ -20,7 +20,7 @@ struct Traffic {
 Traffic traffic_of(const std::string& phase, const Flow& flow);
 /// The same for 3D points.
 Traffic traffic_of(const std::string& phase, const SolidBody& body);
-/// The same for structured columns.
+/// The same for structured particles.
 Traffic traffic_of(const std::string& phase, const StructuredBody& body);
 
 }  // namespace frana::bench

@@ -7,7 +7,7 @@
 
 #include "checks/fuzz/draw.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -130,4 +130,4 @@ std::string json_of(const Campaign& c) {
         json_number(c.seconds), mix, worst, failures);
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -4,7 +4,7 @@
 
 #include "checks/fuzz/shrink.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 struct Plan {
     std::vector<Model> models = all_models();  ///< to draw of
@@ -58,4 +58,4 @@ std::string table_of(const Campaign& campaign);
 /// step, time, text, shrunk_...}]}.
 std::string json_of(const Campaign& campaign);
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 using Function = double (*)(double, double);
@@ -157,4 +157,4 @@ std::string cfl_table(const std::vector<CflRow>& rows) {
     return text + "  " + reason + "\n";
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

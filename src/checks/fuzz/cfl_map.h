@@ -3,7 +3,7 @@
 // invariants.
 #include "checks/fuzz/trial.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 /// A shape function with a transfer and a number of points.
 struct Method {
@@ -38,4 +38,4 @@ CflRow cfl_row(const Method& method, Index steps = 100);
 /// For people: a row a shape and transfer, a column a number of points.
 std::string cfl_table(const std::vector<CflRow>& rows);
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

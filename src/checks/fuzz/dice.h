@@ -5,7 +5,7 @@
 
 #include "base/types.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 /// Random numbers that are the same on every platform: splitmix64 (Steele, Lea and Flood 2014).
 class Dice {
@@ -34,4 +34,4 @@ private:
     std::uint64_t state_;
 };
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

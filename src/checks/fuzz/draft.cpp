@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "scene/build_scene.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 /// A draft's rasters, by the last part of their name.
@@ -86,8 +86,8 @@ bool same(const Draft& a, const Draft& b) {
 }
 
 const std::vector<Model>& all_models() {
-    static const std::vector<Model> models = {Model::depth_averaged, Model::solid_flow, Model::structured, Model::water,
-                                              Model::mixture,        Model::staged,     Model::flood};
+    static const std::vector<Model> models = {Model::depth_averaged, Model::mpm3d,  Model::structured, Model::water,
+                                              Model::mixture,        Model::staged, Model::flood};
     return models;
 }
 
@@ -95,7 +95,7 @@ const char* word_of(Model model) {
     switch (model) {
         case Model::depth_averaged:
             return "depth_averaged";
-        case Model::solid_flow:
+        case Model::mpm3d:
             return "solid_flow";
         case Model::structured:
             return "structured";
@@ -149,4 +149,4 @@ Mirror mirror_of(const std::string& word) {
     throw UserError(fmt::format("--mirror: found \"{}\"; expected x, y or diagonal; choose one of them", word));
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -7,10 +7,10 @@
 
 #include "scene/scene.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 /// What carries the material of a scene.
-enum class Model { depth_averaged, solid_flow, structured, water, mixture, staged, flood };
+enum class Model { depth_averaged, mpm3d, structured, water, mixture, staged, flood };
 
 /// Images of a draft that are the draft itself.
 enum class Mirror { none, x, y, diagonal };
@@ -60,4 +60,4 @@ const char* word_of(Mirror mirror);
 /// Throws UserError for any other word.
 Mirror mirror_of(const std::string& word);
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -5,7 +5,7 @@
 
 #include "base/constants.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 /// Pixel (i, j) and its image.
@@ -176,8 +176,8 @@ void draw_other(Dice& dice, Draft& draft) {
     switch (draft.model) {
         case Model::depth_averaged:
             break;
-        case Model::solid_flow:
-            return draw_solid_flow(dice, draft);
+        case Model::mpm3d:
+            return draw_mpm3d(dice, draft);
         case Model::structured:
             return draw_structured(dice, draft);
         case Model::water:
@@ -218,4 +218,4 @@ Model model_of(const std::vector<Model>& models, std::uint64_t seed, std::uint64
     return models[static_cast<std::size_t>(Dice(salted(seed, kModel), n).below(static_cast<Index>(models.size())))];
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -6,7 +6,7 @@
 #include "checks/fuzz/dice.h"
 #include "checks/fuzz/draft.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 /// Case `n` of the series `seed`: slopes to 80 degrees, cliffs, pits, noise, nodata, films next to masses. All laws and
 /// schemes occur. Some of them are piles below their friction angle, lakes, or mirror images of themselves.
@@ -18,12 +18,12 @@ Draft draw(Model model, std::uint64_t seed, std::uint64_t n);
 Model model_of(const std::vector<Model>& models, std::uint64_t seed, std::uint64_t n);
 
 /// All of a case that another model carries, but for its end and its claims on bits.
-void draw_solid_flow(Dice& dice, Draft& draft);  ///< 3D points from the start, on all of the terrain
-void draw_structured(Dice& dice, Draft& draft);  ///< columns that hold together, and grains
+void draw_mpm3d(Dice& dice, Draft& draft);       ///< 3D points from the start, on all of the terrain
+void draw_structured(Dice& dice, Draft& draft);  ///< particles that hold together, and grains
 void draw_water(Dice& dice, Draft& draft);       ///< a lake, rain, a wave of water, with little that is solid
-void draw_mixture(Dice& dice, Draft& draft);     ///< columns and grains with water in their pores and within them
+void draw_mixture(Dice& dice, Draft& draft);     ///< particles and grains with water in their pores and within them
 void draw_flood(Dice& dice, Draft& draft);       ///< water alone: releases, a lake, rain, inflows, sides of all kinds
-void draw_staged(Dice& dice, Draft& draft);      ///< columns, 3D points in a window, and perhaps columns again
+void draw_staged(Dice& dice, Draft& draft);      ///< particles, 3D points in a window, and perhaps particles again
 
 /// Shape of the ground, of the release, what it is made of, how it is solved: the parts of draw().
 void draw_terrain(Dice& dice, Draft& draft);
@@ -91,4 +91,4 @@ struct Scales {
 };
 Scales scales_of(const Draft& draft);
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -4,9 +4,9 @@
 
 #include "checks/fuzz/draw.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 /// The keys of a stage ("stage#0"), and of a barrier perhaps, for what the draft lets go. Its cell [m].
 double draw_3d(Dice& dice, Draft& draft, const std::string& stage);
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

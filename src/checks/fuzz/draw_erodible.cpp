@@ -5,7 +5,7 @@
 #include "checks/fuzz/draw.h"
 #include "scene/parameters.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 /// Rock here and there, and depths that jump from pixel to pixel; or even.
@@ -55,4 +55,4 @@ void draw_deposition(Dice& dice, Draft& draft) {
     say(draft, "deposition.time", dice.chance(0.5) ? 0.0 : dice.decades(1e-3, 10.0));
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

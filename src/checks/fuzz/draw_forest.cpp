@@ -1,7 +1,7 @@
 // Trees in the way of a random case.
 #include "checks/fuzz/draw.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 void draw_forest(Dice& dice, Draft& draft) {
     const bool other_scheme = draft.has("scheme.preset") || draft.has("scheme.shape");
@@ -20,4 +20,4 @@ void draw_forest(Dice& dice, Draft& draft) {
     if (dice.chance(0.2)) say(draft, "forest.max_depth", dice.decades(1e-3, 1.0) * draft.dem().geometry.cell);
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

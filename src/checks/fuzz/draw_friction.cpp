@@ -6,7 +6,7 @@
 #include "scene/law_places.h"
 #include "scene/parameters.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 /// A number that the draft gives and that may vary spatially.
@@ -52,4 +52,4 @@ void draw_friction(Dice& dice, Draft& draft) {
     draft.keys[key.key] = "\"" + file_of(placed.in_zone) + "\"";
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -6,7 +6,7 @@
 
 #include "checks/fuzz/draw.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 constexpr Index kInside = 7;  ///< cells from the edge of the terrain and from holes, of a line
@@ -74,4 +74,4 @@ void draw_spring(Dice& dice, Draft& draft) {
     say(draft, table + "volume", volume);
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -4,7 +4,7 @@
 
 #include "checks/fuzz/draw.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 void draw_late(Dice& dice, Draft& draft) {
     if (draft.claims.rests || draft.claims.mirror != Mirror::none || draft.has("scheme.preset")) return;
@@ -35,4 +35,4 @@ void draw_late(Dice& dice, Draft& draft) {
     if (dice.chance(0.5) && bed_falls) draft.keys["release#0.included_in_dem"] = "true";
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

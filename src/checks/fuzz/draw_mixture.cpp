@@ -1,8 +1,8 @@
-// Columns and grains with water in their pores, within them and around them.
+// Particles and grains with water in their pores, within them and around them.
 #include "checks/fuzz/draw.h"
 #include "checks/fuzz/draw_structure.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 void draw_mixture(Dice& dice, Draft& draft) {
     draw_ground(dice, draft);
@@ -15,4 +15,4 @@ void draw_mixture(Dice& dice, Draft& draft) {
     if (dice.chance(0.2)) draw_level(dice, draft);
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -7,7 +7,7 @@
 #include "checks/fuzz/draw.h"
 #include "scene/parameters.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 bool has(const std::vector<std::string>& words, const std::string& word) {
@@ -111,4 +111,4 @@ void draw_scheme(Dice& dice, Draft& draft) {
     if (dice.chance(0.25)) draw_parts(dice, draft);
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -4,7 +4,7 @@
 
 #include "checks/fuzz/draw.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 constexpr double kNone = Raster::nodata;
@@ -156,4 +156,4 @@ Scales scales_of(const Draft& draft) {
     return of;
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -1,4 +1,4 @@
-// Runs in stages: columns first or points from the start, in a window, and columns again.
+// Runs in stages: particles first or points from the start, in a window, and particles again.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include "checks/fuzz/draw.h"
 #include "checks/fuzz/draw_3d.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 /// Some nodes of the terrain, three and more each way.
@@ -30,19 +30,19 @@ void draw_staged(Dice& dice, Draft& draft) {
     draw_ground(dice, draft);
     draw_release(dice, draft, {0.15, 3.0, 120});
     draw_bed_law(dice, draft);
-    const double step = 0.3 * draft.dem().geometry.cell / scales_of(draft).wave;  // of columns, about [s]
-    const bool columns_first = dice.chance(0.7), columns_again = dice.chance(0.4);
-    const double begin = columns_first ? step * dice.between(0.5, 12.0) : 0.0;
-    const std::string stage = columns_first ? "stage#1" : "stage#0";
-    if (columns_first) {
+    const double step = 0.3 * draft.dem().geometry.cell / scales_of(draft).wave;  // of particles, about [s]
+    const bool particles_first = dice.chance(0.7), particles_again = dice.chance(0.4);
+    const double begin = particles_first ? step * dice.between(0.5, 12.0) : 0.0;
+    const std::string stage = particles_first ? "stage#1" : "stage#0";
+    if (particles_first) {
         say(draft, "stage#0.model", "depth_averaged");
         say(draft, "stage#0.until", begin);
     }
     draw_3d(dice, draft, stage);
     if (dice.chance(0.85)) draw_window(dice, draft, stage);
-    if (!columns_again) return;
+    if (!particles_again) return;
     say(draft, stage + ".until", begin + step * dice.between(0.2, 3.0));
-    say(draft, columns_first ? "stage#2.model" : "stage#1.model", "depth_averaged");
+    say(draft, particles_first ? "stage#2.model" : "stage#1.model", "depth_averaged");
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -1,10 +1,10 @@
-// Columns that hold together, and grains: what a random case of them is made of.
+// Particles that hold together, and grains: what a random case of them is made of.
 #include <algorithm>
 
 #include "checks/fuzz/draw.h"
 #include "checks/fuzz/draw_structure.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 void draw_structure(Dice& dice, Draft& draft) {
     const Scales of = scales_of(draft);
@@ -35,4 +35,4 @@ void draw_structured(Dice& dice, Draft& draft) {
     draw_structure(dice, draft);
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -5,7 +5,7 @@
 #include "base/constants.h"
 #include "checks/fuzz/draw.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 /// Of 1 cm to 100 m; three significant bits, so that map coordinates and pixel edges are exact.
@@ -135,4 +135,4 @@ void draw_ground(Dice& dice, Draft& draft) {
     flatten(draft, rise);
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

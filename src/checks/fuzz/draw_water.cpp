@@ -4,7 +4,7 @@
 #include "checks/fuzz/draw.h"
 #include "checks/fuzz/draw_structure.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 /// Rain that fills a cell by up to a tenth in a step of waves, or a raster of it.
@@ -99,4 +99,4 @@ void draw_flood(Dice& dice, Draft& draft) {
     if (dice.chance(0.6)) draw_sides(dice, draft);
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

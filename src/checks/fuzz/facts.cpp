@@ -10,7 +10,7 @@
 #include "shallow/depth_averaged.h"
 #include "terrain/places.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -80,7 +80,7 @@ void learn_bed(const Scene& scene, const Flow& flow, Facts& facts) {
     facts.cancels = facts.cancels || std::holds_alternative<bed::Bingham>(scene.bed_law);
 }
 
-/// The same as structured columns and water have it: no Hessian bends their paths.
+/// The same as structured particles and water have it: no Hessian bends their paths.
 void learn_bed(const Raster& bed, Facts& facts) {
     const GridGeometry& g = bed.geometry;
     double steepest = 0.0;
@@ -203,7 +203,7 @@ void learn_deposition(const Flow& flow, Facts& facts) {
     facts.stretch = std::hypot(1.0, facts.steepest);
 }
 
-void learn_columns(const Scene& scene, const Flow& flow, Facts& facts) {
+void learn_particles(const Scene& scene, const Flow& flow, Facts& facts) {
     learn_bed(scene, flow, facts);
     if (scene.erodible) learn_erodible(*scene.erodible, flow, facts);
     learn_inflows(scene, facts);
@@ -222,8 +222,8 @@ void learn_columns(const Scene& scene, const Flow& flow, Facts& facts) {
     facts.hidden_energy = std::max(0.0, facts.release_energy - depth_energy(flow));
 }
 
-/// No column ever stands in such a run. There are points from the start, and they may leave only where columns cannot
-/// stand.
+/// No particle ever stands in such a run. There are points from the start, and they may leave only where particles
+/// cannot stand.
 bool is_all_in_3d(const Scene& scene) {
     const std::array<Index, 4>& w = scene.solid->window;
     const GridGeometry& g = scene.bed.geometry;
@@ -231,8 +231,8 @@ bool is_all_in_3d(const Scene& scene) {
            w[3] == g.ny - 1;
 }
 
-/// What columns have on nodes is no excuse for 3D points.
-void forget_columns(Facts& facts) {
+/// What particles have on nodes is no excuse for 3D points.
+void forget_particles(Facts& facts) {
     facts.energy_law = true, facts.stretch = 1.0;
     facts.linear = facts.carried_depth = false;
     facts.turn = facts.hidden_energy = facts.steepest = facts.one_cell_drop = facts.one_cell_bend = 0.0;
@@ -266,13 +266,13 @@ Facts facts_of(const Scene& scene, const Simulation& simulation, const Claims& c
     facts.cell = scene.bed.geometry.cell;
     facts.nodes_x = scene.bed.geometry.nx, facts.nodes_y = scene.bed.geometry.ny;
     learn_release(scene, facts);
-    if (const DepthAveraged* columns = columns_of(simulation)) {
-        learn_columns(scene, columns->flow(), facts);
+    if (const DepthAveraged* particles = particles_of(simulation)) {
+        learn_particles(scene, particles->flow(), facts);
     } else if (const auto* staged = dynamic_cast<const StagedRun*>(&simulation)) {
         facts.in_3d = facts.cancels = true, facts.all_in_points = false;
         facts.cell_3d = scene.solid->cell;
-        learn_columns(scene, staged->columns().flow(), facts);
-        if (is_all_in_3d(scene)) forget_columns(facts);
+        learn_particles(scene, staged->particles().flow(), facts);
+        if (is_all_in_3d(scene)) forget_particles(facts);
     } else {
         facts.walls = scene.sides == Sides::wall;
         facts.affine = facts.cancels = true;
@@ -282,4 +282,4 @@ Facts facts_of(const Scene& scene, const Simulation& simulation, const Claims& c
     return facts;
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -5,7 +5,7 @@
 #include "checks/fuzz/draft.h"
 #include "run/simulation.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 /// What of a scene decides on which invariants hold, and how well.
 struct Facts {
@@ -40,18 +40,18 @@ struct Facts {
     double level_error = 0.0;      ///< of a lake: how far its surface is off the level at the start [m]
     double level_round_off = 0.0;  ///< of elevations, depths and their sum in a lake [m]
     double one_cell_bend = 0.0;    ///< largest second difference of the bed between neighbouring nodes [m]
-    double density = 0.0;          ///< of the columns or points [kg/m^3]
+    double density = 0.0;          ///< of the particles or points [kg/m^3]
     bool all_in_points = true;     ///< no mass but that of points: no free water, nothing on its way between two models
     bool in_3d = false;            ///< 3D points, some of the time
     double cell_3d = 0.0;          ///< of their grid [m]
     bool cancels = false;       ///< impulses of weight and pressure are recorded each, and cancel where material rests
-    double displaces = 0.0;     ///< weight of the water that columns can displace [N]
+    double displaces = 0.0;     ///< weight of the water that particles can displace [N]
     double bears = 1.0;         ///< share of that which bears them (WaterExchange::pore_pressure) [1]
     double drained_drop = 0.0;  ///< fall of free water that has left a cell but for a film [m]
-    bool virtual_mass = false;  ///< columns carry water's inertia: they part from it by what a step gets wrong
+    bool virtual_mass = false;  ///< particles carry water's inertia: they part from it by what a step gets wrong
     double highest_rain = -std::numeric_limits<double>::infinity();  ///< highest ground that rain falls on [m]
 };
 /// Of a simulation that make_simulation() made of `scene` and that has not moved.
 Facts facts_of(const Scene& scene, const Simulation& simulation, const Claims& claims);
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

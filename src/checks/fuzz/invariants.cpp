@@ -9,7 +9,7 @@
 #include "base/compensated_sum.h"
 #include "observe/budget.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -112,9 +112,9 @@ std::optional<Violation> Watch::finite(const Snapshot& state) {
     Index bad = state.not_finite;
     const auto sample = [&](double value) { bad += !std::isfinite(value); };
     const PointStates& points = state.points;
-    for (const auto* column : {&points.x, &points.y, &points.z, &points.vx, &points.vy, &points.speed, &points.mass,
-                               &points.depth, &points.change})
-        for (const double value : *column) sample(value);
+    for (const auto* array : {&points.x, &points.y, &points.z, &points.vx, &points.vy, &points.speed, &points.mass,
+                              &points.depth, &points.change})
+        for (const double value : *array) sample(value);
     for (const NodeState& node : state.nodes)
         for (const double value : {node.depth, node.surface, node.vx, node.vy, node.speed}) sample(value);
     for (const Status* status : {&state.between, &state.now})
@@ -181,7 +181,7 @@ std::optional<Violation> Watch::energy(const Snapshot& state) {
     const double slope = slope_uphill();
     const double gone = now.energy_left - first.energy_left - now.mass_left * facts_.gravity * lowest_;
     const double uphill = slope * slope / (1.0 + slope * slope) * (now.kinetic + std::max(0.0, gone));
-    // Half of water's cells at walls lies beyond them, and columns displace water there too.
+    // Half of water's cells at walls lies beyond them, and particles displace water there too.
     const double beyond_walls = facts_.walls ? deepest_ : 0.0;
     const double lifted =
         facts_.displaces * (facts_.one_cell_drop + (1.0 - facts_.bears) * (highest_ - lowest_) + beyond_walls);
@@ -290,4 +290,4 @@ void Watch::part() {
     worst_["symmetry"] = 1.0;
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

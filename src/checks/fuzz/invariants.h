@@ -7,7 +7,7 @@
 #include "checks/fuzz/facts.h"
 #include "checks/fuzz/snapshot.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 /// A broken invariant.
 struct Violation {
@@ -60,16 +60,16 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   flank of a heap that runs uphill. It conserves the energy of the horizontal velocity. What the vertical one adds,
 ///   B^2 / (1 + B^2) of K, is the model's own. That is so for what is there and for what left with it. That takes a
 ///   depth that changes by more than the bed. So B there is at most the largest depth over a cell.
-///   It does not hold for the paper preset, whose explicit forces act on nodes of vanishing mass. Structured columns
+///   It does not hold for the paper preset, whose explicit forces act on nodes of vanishing mass. Structured particles
 ///   and water bend with no Hessian: their energy is checked on ground that does not bend.
-///   Columns that go under a lake lift the water over them. A shore within a cell, or cells of water that reach half a
-///   cell behind a wall, do not take that back. They miss up to the displaced weight over the drop of a cell. Where
-///   only a share of the pores' pressure bears columns (water.pore_pressure), they miss its rest over the whole fall.
+///   Particles that go under a lake lift the water over them. A shore within a cell, or cells of water that reach half
+///   a cell behind a wall, do not take that back. They miss up to the displaced weight over the drop of a cell. Where
+///   only a share of the pores' pressure bears particles (water.pore_pressure), they miss its rest over the whole fall.
 ///   What comes from the bed or becomes bed has the energy recorded for it. A point takes it from nodes around itself:
 ///   up to the drop of a cell, and the depth, of that mass is allowed. Where later releases are cut out it is not checked.
-///   3D points have an energy law anywhere, and none of the exceptions above. A run with columns as well has those of
-///   columns.
-/// - speed (columns and water): V^2 <= (1 + kConvergence)^2 stretch^4 ((v0 + 2 s sqrt(g h))^2 + 2 g drop). v0 and the
+///   3D points have an energy law anywhere, and none of the exceptions above. A run with particles as well has those of
+///   particles.
+/// - speed (particles and water): V^2 <= (1 + kConvergence)^2 stretch^4 ((v0 + 2 s sqrt(g h))^2 + 2 g drop). v0 and the
 ///   highest surface are those of the start. h is the largest depth that exerts pressure: of nodes, or what points
 ///   carry. drop goes to the lowest bed so far.
 ///   stretch is 1 where the model has an energy law. Elsewhere a bend may turn a speed along the map into `stretch`
@@ -86,7 +86,7 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   `energy`). (Seed 888, scene 8148: a column of 138 m. Its outer points run 1.48 times as fast as the bound in four
 ///   steps.)
 ///   Neither energy nor speed is checked with water's virtual mass. A step takes that from an estimate of what drives
-///   the water. Columns part from it by what the estimate gets wrong. (Speeds of up to three times the bound have
+///   the water. Particles part from it by what the estimate gets wrong. (Speeds of up to three times the bound have
 ///   been seen.) The energy of the virtual mass, half of it times the slip's square, would not close the budget. That
 ///   estimate does work on the slip which no term takes back. And the mass changes with the mixture where no force
 ///   acts on either phase.
@@ -98,7 +98,7 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   sides. What is squeezed between leaves at up to three times its speed, by the law of elastic blows. Material that
 ///   strikes ground or itself spouts. Seed 2's scene 992 and seed 25112's 149, 370 and 667 do. Points leave at 1.6 to
 ///   2.4 v0, in one of them at 3.1 v0 in shorter steps. All of it loses energy meanwhile.
-///   In runs that have columns as well, points may begin up a slope from their column, by a terrain cell. They
+///   In runs that have particles as well, points may begin up a slope from their particle, by a terrain cell. They
 ///   have the speed that its path gave it. So the drop of a cell, and the `stretch` of `speed`, come on top.
 /// - rest (claimed scenes): a pile's positions and velocities are those of the start, bit for bit. A lake is level as
 ///   far as points at these places can make it so (MassFit::level_error). Where the fit met the level, it moves no
@@ -161,4 +161,4 @@ private:
     std::map<std::string, double> worst_;
 };
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

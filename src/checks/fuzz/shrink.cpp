@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 using Change = std::function<void(Draft&)>;
@@ -202,4 +202,4 @@ Shrunk shrink(const Draft& draft, const std::function<Verdict(const Draft&)>& ju
     return Shrinker(draft, judge, budget).result();
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -4,7 +4,7 @@
 
 #include "checks/fuzz/trial.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 /// The smallest draft found whose verdict still breaks the same invariant as `draft`, and that verdict. Tries fewer
 /// steps, a smaller grid, less and plainer material, plainer ground, and keys at their defaults. Repeats that until
@@ -16,4 +16,4 @@ struct Shrunk {
 };
 Shrunk shrink(const Draft& draft, const std::function<Verdict(const Draft&)>& judge, Index budget = 300);
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

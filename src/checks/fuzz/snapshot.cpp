@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "coupling/structured_run.h"
-#include "coupling/walled_columns.h"
+#include "coupling/walled_particles.h"
 #include "shallow/depth_averaged.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 bool is_finite(const Field& field, Index n) {
@@ -59,7 +59,7 @@ std::vector<NodeState> nodes_of(const Frame& frame) {
     return nodes;
 }
 
-/// Of columns, and of free water where it is more than a film. A number that is none stays the largest.
+/// Of particles, and of free water where it is more than a film. A number that is none stays the largest.
 double fastest_of(const Frame& frame, const PointStates& points) {
     double fastest = 0.0;
     for (Index p = 0; p < points.count(); ++p) {
@@ -80,10 +80,10 @@ double fastest_of(const Frame& frame, const PointStates& points) {
 void sharpen(const DepthAveraged& simulation, bool steep, Snapshot& shot) {
     const Flow& flow = simulation.flow();
     PointStates& points = shot.points;
-    points.x.assign(flow.columns.x.begin(), flow.columns.x.end());
-    points.y.assign(flow.columns.y.begin(), flow.columns.y.end());
-    flow.columns.with_real([&](auto real) {
-        const auto& held = flow.columns.carried<decltype(real)>();
+    points.x.assign(flow.particles.x.begin(), flow.particles.x.end());
+    points.y.assign(flow.particles.y.begin(), flow.particles.y.end());
+    flow.particles.with_real([&](auto real) {
+        const auto& held = flow.particles.carried<decltype(real)>();
         for (std::size_t p = 0; p < points.mass.size(); ++p) {
             points.vx[p] = held.vx[p], points.vy[p] = held.vy[p], points.depth[p] = held.depth[p];
             const double xx = held.cxx[p], xy = held.cxy[p], yx = held.cyx[p], yy = held.cyy[p];
@@ -105,7 +105,7 @@ void sharpen(const DepthAveraged& simulation, bool steep, Snapshot& shot) {
         });
 }
 
-/// The same of structured columns: what velocity changes across a cell.
+/// The same of structured particles: what velocity changes across a cell.
 void sharpen(const StructuredRun& simulation, Snapshot& shot) {
     const StructuredBody& body = simulation.flow().body();
     const StructuredPoints& q = body.points;
@@ -122,8 +122,8 @@ double Snapshot::fastest() const {
     return fastest;
 }
 
-const DepthAveraged* columns_of(const Simulation& simulation) {
-    if (const auto* walled = dynamic_cast<const WalledColumns*>(&simulation)) return &walled->columns();
+const DepthAveraged* particles_of(const Simulation& simulation) {
+    if (const auto* walled = dynamic_cast<const WalledParticles*>(&simulation)) return &walled->particles();
     return dynamic_cast<const DepthAveraged*>(&simulation);
 }
 
@@ -136,9 +136,9 @@ Snapshot snapshot_of(Simulation& simulation, bool steep) {
     shot.max_speed = fastest_of(frame, shot.points);
     shot.nodes = nodes_of(frame);
     shot.not_finite = count_not_finite(frame);
-    if (const DepthAveraged* columns = columns_of(simulation)) sharpen(*columns, steep, shot);
-    if (const auto* columns = dynamic_cast<const StructuredRun*>(&simulation)) sharpen(*columns, shot);
+    if (const DepthAveraged* particles = particles_of(simulation)) sharpen(*particles, steep, shot);
+    if (const auto* particles = dynamic_cast<const StructuredRun*>(&simulation)) sharpen(*particles, shot);
     return shot;
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -9,7 +9,7 @@ namespace frana {
 class DepthAveraged;
 }
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 /// A node of the domain near material.
 struct NodeState {
@@ -22,14 +22,14 @@ struct NodeState {
 /// Points of any model, equal lengths.
 struct PointStates {
     std::vector<double> x, y;    ///< from the terrain's first node [cells]
-    std::vector<double> z;       ///< of 3D points their height, of columns that of their surface [m]
+    std::vector<double> z;       ///< of 3D points their height, of particles that of their surface [m]
     std::vector<double> vx, vy;  ///< along the map; of the depth-averaged flow half a step behind [m/s]
     std::vector<double> speed;   ///< along the bed or in 3D [m/s]
     std::vector<double> mass;    ///< [kg]
     std::vector<double> depth;   ///< [m]
-    std::vector<double> change;  ///< of the velocity across a cell, of columns; else empty [m/s]
+    std::vector<double> change;  ///< of the velocity across a cell, of particles; else empty [m/s]
     std::vector<double> id;
-    std::vector<std::uint8_t> in_3d;  ///< 1: a 3D point, 0: a column
+    std::vector<std::uint8_t> in_3d;  ///< 1: a 3D point, 0: a particle
 
     Index count() const { return static_cast<Index>(mass.size()); }
 };
@@ -38,7 +38,7 @@ struct Snapshot {
     Status between;  ///< as it stands between frames: momentum and impulse half a step behind
     Status now;      ///< as in a frame: all at its time
     PointStates points;
-    double max_speed = 0.0;  ///< of columns and of water at `now`, along the bed on steep terrain [m/s]
+    double max_speed = 0.0;  ///< of particles and of water at `now`, along the bed on steep terrain [m/s]
     std::vector<NodeState> nodes;
     Index not_finite = 0;  ///< numbers of the frame that are not, but for nodes without ground
 
@@ -47,9 +47,9 @@ struct Snapshot {
 };
 
 /// The depth-averaged flow of a run that is nothing else, among barriers or not; nullptr of other runs.
-const DepthAveraged* columns_of(const Simulation& simulation);
+const DepthAveraged* particles_of(const Simulation& simulation);
 
 /// The present state. Looking does not change the run (tests/conserve_runs.cpp).
 Snapshot snapshot_of(Simulation& simulation, bool steep);
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

@@ -12,7 +12,7 @@
 #include "observe/memory_archive.h"
 #include "shallow/depth_averaged.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 constexpr double kNever = 1e300;  ///< [s]
@@ -172,4 +172,4 @@ Verdict examine(const Draft& draft, const Falsify& falsify) {
     }
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

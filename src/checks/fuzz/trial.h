@@ -4,7 +4,7 @@
 
 #include "checks/fuzz/invariants.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 
 /// What became of a case.
 struct Verdict {
@@ -35,4 +35,4 @@ constexpr double kDisturbed = 1e4, kShare = 0.1;
 Verdict examine(const Scene& scene, const Claims& claims, Index steps, const Falsify& falsify = {});
 Verdict examine(const Draft& draft, const Falsify& falsify = {});
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

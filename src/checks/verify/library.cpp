@@ -36,7 +36,7 @@ const std::vector<Problem>& library() {
                                  detrainment_problems,
                                  structured_problems,
                                  structured_case_problems,
-                                 strained_column_problems,
+                                 strained_particle_problems,
                                  inflow_problems,
                                  water_problems,
                                  water_slope_problems,

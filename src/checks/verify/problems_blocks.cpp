@@ -122,7 +122,7 @@ Stand stand(const Setup& setup, const Load& load, double turn) {
     Trial trial(std::move(scene), setup);
     trial.run_to(10.0);
     const Seeds& seeds = trial.scene().particles;
-    const Columns& c = trial.simulation().flow().columns;
+    const Particles& c = trial.simulation().flow().particles;
     const GridGeometry& g = trial.scene().bed.geometry;
     double farthest = 0.0;
     for (Index p = 0; p < c.count(); ++p) {

@@ -1,5 +1,5 @@
-// The conversion from columns to 3D points. The field is that of Fois, de Falco, Formaggia (2025), section 4.3: h = 10 -
-// sin(2x) cos(y), u = 2.001 m/s on [0, 5]^2.
+// The conversion from particles to 3D points. The field is that of Fois, de Falco, Formaggia (2025), section 4.3: h =
+// 10 - sin(2x) cos(y), u = 2.001 m/s on [0, 5]^2.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -22,26 +22,28 @@ double volume_over(double x0, double x1, double y0, double y1) {
            0.5 * (std::cos(2.0 * x0) - std::cos(2.0 * x1)) * (std::sin(y1) - std::sin(y0));
 }
 
-/// How the mass came onto the columns. Evenly, as the paper's generation does it, or each the mass over its own square.
+/// How the mass came onto the particles. Evenly, as the paper's generation does it, or each the mass over its own
+/// square.
 enum class Sharing { even, own };
 
-/// `cells` x `cells` columns in the middles of squares.
+/// `cells` x `cells` particles in the middles of squares.
 struct Field {
     Index cells = 0;
     Sharing sharing = Sharing::own;
     double width() const { return kSide / static_cast<double>(cells); }
-    Index columns() const { return cells * cells; }
-    ErrorColumn column(Index p) const {
+    Index particles() const { return cells * cells; }
+    ErrorParticle particle(Index p) const {
         const Index place = p % cells, row = p / cells;
         const double x = width() * static_cast<double>(place), y = width() * static_cast<double>(row);
-        const double even = volume_over(0.0, kSide, 0.0, kSide) / static_cast<double>(columns());
+        const double even = volume_over(0.0, kSide, 0.0, kSide) / static_cast<double>(particles());
         const double volume = sharing == Sharing::even ? even : volume_over(x, x + width(), y, y + width());
         const double mass = kSlabDensity * volume;
         return {depth_at(x + 0.5 * width(), y + 0.5 * width()), mass, volume, mass * kSlabSpeed};
     }
     ConversionErrors errors(double spacing) const {
         const double mass = kSlabDensity * volume_over(0.0, kSide, 0.0, kSide);
-        return conversion_errors(columns(), [this](Index p) { return column(p); }, spacing, {mass, mass * kSlabSpeed});
+        return conversion_errors(particles(), [this](Index p) { return particle(p); }, spacing,
+                                 {mass, mass * kSlabSpeed});
     }
 };
 
@@ -50,28 +52,28 @@ double order_between(double coarse, double fine, double ratio) { return std::log
 /// Points of the field, 1 m apart so that they fit in memory, with a parabolic profile. Checks what conversion must
 /// conserve.
 Conservation keep(const Field& field) {
-    FlowColumns c;
-    for (Index p = 0; p < field.columns(); ++p) {
-        const ErrorColumn column = field.column(p);
+    FlowParticles c;
+    for (Index p = 0; p < field.particles(); ++p) {
+        const ErrorParticle particle = field.particle(p);
         const Index place = p % field.cells, row = p / field.cells;
         c.x.push_back(field.width() * (static_cast<double>(place) + 0.5));
         c.y.push_back(field.width() * (static_cast<double>(row) + 0.5));
-        c.depth.push_back(column.depth);
-        c.mass.push_back(column.mass);
-        c.volume.push_back(column.volume);
+        c.depth.push_back(particle.depth);
+        c.mass.push_back(particle.mass);
+        c.volume.push_back(particle.volume);
     }
     c.id = c.bed_pressure = c.slope_x = c.slope_y = c.bed = c.vy = std::vector<double>(c.count(), 0.0);
     c.vx.assign(c.count(), kSlabSpeed);
     const ConversionChoice choice{1.0, Layers::centres, Vertical::zero, VelocityProfile::parabolic};
-    return conservation_of(c, columns_to_points(c, choice), choice);
+    return conservation_of(c, particles_to_points(c, choice), choice);
 }
 
-/// The largest error of the quantities with that unit, or of those with another; in total and per column.
+/// The largest error of the quantities with that unit, or of those with another; in total and per particle.
 double largest_error(const Conservation& kept, const std::string& unit, bool with) {
     double largest = 0.0;
     for (const Kept& quantity : kept.kept)
         if ((quantity.unit == unit) == with)
-            largest = std::max({largest, quantity.relative_error, quantity.worst_column});
+            largest = std::max({largest, quantity.relative_error, quantity.worst_particle});
     return largest;
 }
 
@@ -86,7 +88,7 @@ Measurement run_conversion(const Setup& setup) {
     const double order_hx = order_between(half.errors(kSpacings[0]).mass, coarse.mass, 2.0);
     const double momentum_order = order_between(coarse.momentum, fine.momentum, ratio);
     Measurement m;
-    m.particles = even.columns();
+    m.particles = even.particles();
     m.mass_error = largest_error(kept, "kg m/s", false);
     m.add("momentum_error", largest_error(kept, "kg m/s", true));
     m.add("mass_measure", coarse.mass, "kg");
@@ -114,14 +116,14 @@ std::vector<Residual> total_volume() {
 
 std::vector<Problem> conversion_problems() {
     Problem conversion{"conversion",
-                       "columns into 3D points: what is kept, and the measures of Fois et al. 2025, section 4.3",
+                       "particles into 3D points: what is kept, and the measures of Fois et al. 2025, section 4.3",
                        {250, 500, 1000},
                        total_volume,
                        run_conversion};
     conversion.order_of = "mass_measure";
     conversion.gates = {
-        {0, "mass_error", 1e-12, "goal, in total and per column"},
-        {0, "momentum_error", 1e-12, "goal, in total and per column"},
+        {0, "mass_error", 1e-12, "goal, in total and per particle"},
+        {0, "momentum_error", 1e-12, "goal, in total and per particle"},
         {0, "order_gap", 0.05, "first order in h_z, second in h_x: eqs. 7, 8 and figure 12 of the paper"}};
     return {conversion};
 }

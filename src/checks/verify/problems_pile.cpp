@@ -56,7 +56,7 @@ std::vector<Residual> pile_residuals() {
 }
 
 /// Largest distance of a point from where it started [cells]; infinite when there are other points than at the start.
-double displacement(const Columns& before, const Columns& now) {
+double displacement(const Particles& before, const Particles& now) {
     if (before.count() != now.count()) return std::numeric_limits<double>::infinity();
     std::vector<Index> where(before.id.size());
     for (Index p = 0; p < before.count(); ++p) where[before.id[p]] = p;
@@ -80,9 +80,9 @@ Measurement run_piles(const Setup& setup) {
             scene.bed_law = bed::Coulomb{pile.mu};
             fill(scene, [&](double x, double y) { return pile.depth(x, y); }, {setup.per_side});
             Trial trial(std::move(scene), setup);
-            const Columns before = trial.simulation().flow().columns;
+            const Particles before = trial.simulation().flow().particles;
             trial.run_to(kPileEnd, [&](const Status& now) { speed = std::max(speed, now.max_speed_on_map); });
-            moved = std::max(moved, cell * displacement(before, trial.simulation().flow().columns));
+            moved = std::max(moved, cell * displacement(before, trial.simulation().flow().particles));
             const double wall = m.wall_seconds;
             m = trial.measure();
             m.wall_seconds += wall;

@@ -1,4 +1,4 @@
-// Columns at rest that become 3D points and stay at rest.
+// Particles at rest that become 3D points and stay at rest.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -15,8 +15,8 @@ namespace {
 constexpr double kRestGravity = 10.0, kRestDensity = 1000.0, kDeepest = 1.0;  // [m/s^2], [kg/m^3], [m]
 constexpr double kRestSlope = 20.0 * constants::kPi / 180.0;
 
-/// A wedge of water against a wall at x = 0, level at z = kDeepest over a bed of 20 degrees. It is of columns one cell
-/// wide. A 3D stage from the start makes points of them, half of that apart.
+/// A wedge of water against a wall at x = 0, level at z = kDeepest over a bed of 20 degrees. It is of particles one
+/// cell wide. A 3D stage from the start makes points of them, half of that apart.
 Scene wedge(const SolidLaw& law, double bed_friction, const Setup& setup) {
     constexpr Index kAcross = 4, kRoom = 4;  // nodes of the terrain
     const double cell = kDeepest / static_cast<double>(setup.cells);

@@ -41,7 +41,7 @@ Measurement run_spin(const Setup& setup) {
         return sum;
     };
     const double given = spin();
-    flow.advance(1e-9);  // columns learn the motion around them, and lose a little in doing so
+    flow.advance(1e-9);  // particles learn the motion around them, and lose a little in doing so
     const double start = spin(), kinetic = flow.status().kinetic;
     Measurement m = run_structured(flow, 2.0 * constants::kPi / kSpin * given / start);
     double turned = 0.0, stretched = 0.0;
@@ -65,7 +65,7 @@ Measurement run_structured_bar(const Setup& setup) {
     s.ground = weightless;
     s.density = 1000.0;
     s.material.young = 1e6;
-    const double c = ColumnLaw(s.material).sound_speed(s.density), v = 1e-3 * c, back = 2.0 / c;
+    const double c = StructuredLaw(s.material).sound_speed(s.density), v = 1e-3 * c, back = 2.0 / c;
     s.grid = grid_over({0, 0}, {1.2, side}, cell);
     Obstacle wall;
     wall.high.x() = 0.0;
@@ -92,7 +92,7 @@ Measurement run_structured_bar(const Setup& setup) {
 struct StructuredSlide {
     double slope_deg, bed_deg, turn_deg, speed, end;
 
-    /// Means of the block: way and speed along the fall on the map. Also the largest way of a column across it.
+    /// Means of the block: way and speed along the fall on the map. Also the largest way of a particle across it.
     struct End {
         double along, speed, across;
         Measurement run;

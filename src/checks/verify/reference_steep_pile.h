@@ -1,5 +1,5 @@
 #pragma once
-// A pile of granular material on a steep plane by the equations that columns on steep terrain obey.
+// A pile of granular material on a steep plane by the equations that particles on steep terrain obey.
 #include <Eigen/Dense>
 #include <array>
 #include <vector>

@@ -5,14 +5,14 @@
 
 namespace frana::verify {
 
-/// A rectangular block, its columns on a lattice from the low corner on.
+/// A rectangular block, its particles on a lattice from the low corner on.
 struct StructuredBlock {
     Vec2 low{0, 0}, high{1, 1};  ///< [m]
     double depth = 1.0;          ///< [m]
     double cohesion = 0.0;       ///< [Pa]
     Vec2 velocity{0, 0};         ///< [m/s]
     double damage = 0.0;         ///< [1]
-    int per_side = 2;            ///< columns a cell and direction
+    int per_side = 2;            ///< particles a cell and direction
 };
 void add_block(StructuredScene& scene, const StructuredBlock& block);
 
@@ -27,7 +27,7 @@ void add_channel(StructuredScene& scene, double low, double high);
 Measurement run_structured(StructuredFlow& flow, double end,
                            const std::function<void(const StructuredFlow&)>& each = {});
 
-/// Length of all columns along x [m].
+/// Length of all particles along x [m].
 double length_of(const StructuredFlow& flow);
 
 }  // namespace frana::verify

@@ -16,7 +16,7 @@ using constants::kDegree;
 constexpr double kLength = 0.30, kWidth = 0.25,
                  kSide = 0.125;  // of the flume's block; its side's way to the wall [m]
 
-/// Columns of the field scenarios: 1900 kg/m^3, phi 30 degrees, E 100 MPa, 12 degrees at the bed.
+/// Particles of the field scenarios: 1900 kg/m^3, phi 30 degrees, E 100 MPa, 12 degrees at the bed.
 StructuredScene field_block(double depth, double cohesion, double length, double cell, int per_side) {
     StructuredScene s;
     s.density = 1900.0;

@@ -17,8 +17,8 @@ constexpr Clay kSoftClay{18.3e3, 27.0}, kStiffClay{26.7e3, 28.0};
 /// fifths of its width, where the floor turns to 5 degrees.
 StructuredScene clay_flume(const Clay& clay, double cell, int per_side = 2);
 
-/// Share of the block's length in which a column of the unhindered part is broken by more than 0.9. It is in slices of
-/// a cell. That part is 0.28 to 0.80 of the width from the obstacle's side, whose corner is at 0.40. `seeds` are the
+/// Share of the block's length in which a particle of the unhindered part is broken by more than 0.9. It is in slices
+/// of a cell. That part is 0.28 to 0.80 of the width from the obstacle's side, whose corner is at 0.40. `seeds` are the
 /// scene's.
 double crack_coverage(const StructuredFlow& flow, const StructuredSeeds& seeds);
 

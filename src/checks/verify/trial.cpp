@@ -156,7 +156,7 @@ Measurement Trial::measure(const Exact& exact) {
 }
 
 double Trial::point_mean(const Function& f) const {
-    const Columns& c = simulation_->flow().columns;
+    const Particles& c = simulation_->flow().particles;
     const GridGeometry& g = scene_.bed.geometry;
     double sum = 0.0, mass = 0.0;
     for (Index p = 0; p < c.count(); ++p) {

@@ -6,9 +6,10 @@
 
 namespace frana::erosion {
 
-/// The flow ploughs (after the entrainment at the front of AvaFrame's com1DFA). Each column takes what lies in the
-/// strip that it goes over, as wide as the column. E = e u / sqrt(A), e the depth that is left and A the column's area.
-/// So a layer is taken within some columns of the front. The mass grows by what lies on the way: m = m_0 + l s.
+/// The flow ploughs (after the entrainment at the front of AvaFrame's com1DFA). Each particle takes what lies in the
+/// strip that it goes over, as wide as the particle. E = e u / sqrt(A), e the depth that is left and A the particle's
+/// area. So a layer is taken within some widths of a particle from the front. The mass grows by what lies on the way:
+/// m = m_0 + l s.
 struct Front {
     static constexpr const char* name = "front";
     static constexpr const char* is = "";

@@ -12,8 +12,8 @@
 
 namespace frana {
 
-/// How fast a moving column lowers the erodible bed below it, rate() [m/s]. Keys, words and descriptions are made from this
-/// list, in its order, by laws::Catalogue.
+/// How fast a moving particle lowers the erodible bed below it, rate() [m/s]. Keys, words and descriptions are made
+/// from this list, in its order, by laws::Catalogue.
 using ErosionLaw = std::variant<erosion::Growth, erosion::Steady, erosion::Shear, erosion::Energy, erosion::Jump,
                                 erosion::Front, erosion::Mechanical>;
 

@@ -4,7 +4,8 @@
 
 namespace frana::erosion {
 
-/// A column over its bed. Lengths are normal to the bed, speeds along it. Real: double, or Double4 for four columns.
+/// A particle over its bed. Lengths are normal to the bed, speeds along it. Real: double, or Double4 for four
+/// particles.
 template <class Real>
 struct StateOf {
     Real thickness{};          ///< of the flow, > 0 [m]
@@ -13,7 +14,7 @@ struct StateOf {
     Real normal_gravity{};     ///< g times the cosine of the slope, of laws with kSeesStress [m/s^2]
     Real eroded{};             ///< depth that was taken here already, of laws with kSeesEroded [m]
     Real left{};               ///< depth that can still be taken here, of laws with kSeesLeft [m]
-    Real edge{};               ///< of a square as large as the column, of laws with kSeesLeft [m]
+    Real edge{};               ///< of a square as large as the particle, of laws with kSeesLeft [m]
     Real lies{};               ///< of a deposit on the bed, of laws with kSeesStress [m]
     Real bears{};              ///< stress that this deposit bears, of laws with kSeesStress [Pa]
     double density = 0.0;      ///< of the flow [kg/m^3]

@@ -111,7 +111,7 @@ std::vector<std::string> same_on_all(const CaseFile& file) {
             if (file.given(fmt::format("stage.{}.{}", n, key)))
                 remarks.push_back(fmt::format(
                     "stage.{}.{} is the same on all cells, so the 3D grid is refined in none of the runs, and what "
-                    "converges is the columns alone; without it, it goes with grid.cell",
+                    "converges is the depth-averaged flow alone; without it, it goes with grid.cell",
                     n, key));
     return remarks;
 }

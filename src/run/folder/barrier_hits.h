@@ -38,7 +38,7 @@ std::vector<BarrierHit> hits_on(const std::vector<Barrier>& barriers, const std:
                                 const Raster* bed = nullptr);
 
 /// Of those that no force is known of, the time of contact is that of their hit. Where the flow was never so deep, there
-/// is no run-up. Where it was, and no column came near, the run-up is the highest surface of the hit.
+/// is no run-up. Where it was, and no particle came near, the run-up is the highest surface of the hit.
 void note_contacts(const std::vector<BarrierHit>& hits, std::vector<BarrierSummary>& summaries);
 
 /// Whether it has a contact or a force, or where a wall's contact is not known, a run-up.

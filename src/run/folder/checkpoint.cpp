@@ -82,8 +82,8 @@ std::string sum_of_bed(const Raster& bed) {
 std::string sum_of_particles(const Scene& scene) {
     Checksum sum;
     for (const Seeds* of : scene.all_particles())
-        for (const auto* column : {&of->x, &of->y, &of->vx, &of->vy, &of->volume, &of->depth, &of->size})
-            sum.add_all(*column);
+        for (const auto* array : {&of->x, &of->y, &of->vx, &of->vy, &of->volume, &of->depth, &of->size})
+            sum.add_all(*array);
     return fmt::format("{:016x}", sum.sum());
 }
 

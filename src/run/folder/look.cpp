@@ -299,7 +299,7 @@ void look_at_impact(const fs::path& run_dir, Json& look) {
     Extent extent;
     const auto& box = figure.view.box;
     for (const auto& piece : figure.moment.material)
-        if (!piece.is_column) extent.add(piece.place.x(), piece.place.y(), piece.place.z());
+        if (!piece.is_particle) extent.add(piece.place.x(), piece.place.y(), piece.place.z());
     const double middle = 0.5 * (extent.zmin + extent.zmax);
     extent = Extent{
         box[0], box[2], box[1], box[3], std::isfinite(middle) ? middle : 0.0, std::isfinite(middle) ? middle : 0.0,

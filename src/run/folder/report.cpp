@@ -78,7 +78,8 @@ std::string bed_text(const RunRecord& r) {
 }
 
 /// "9100 m3; by the tables, until their row of t = 95.2 s, 9100 m3, difference 1e-12; of their 12000 m3 2900 m3 had not
-/// come in". A table comes in as rows of columns, each when it is complete. Several tables have rows of several times.
+/// come in". A table comes in as rows of particles, each when it is complete. Several tables have rows of several
+/// times.
 std::string inflow_text(const RunRecord& r) {
     constexpr double kNone = 1e-9;  // of the tables: round-off of their sums
     const InflowBudget& inflow = *r.extras.inflow;
@@ -174,13 +175,14 @@ std::string results(const RunRecord& r) {
 std::string water_text(const RunRecord& r) {
     const WaterBudget& w = *r.extras.water;
     const std::string fed = w.fed > 0.0 ? fmt::format("{:.8g} by inflows, ", w.fed) : "";
-    const std::string in_columns =
-        r.of_water_alone() ? "" : fmt::format(" and {:.8g} in columns (these released {:.4g})", w.confined, w.released);
+    const std::string in_particles =
+        r.of_water_alone() ? ""
+                           : fmt::format(" and {:.8g} in particles (these released {:.4g})", w.confined, w.released);
     return fmt::format(
         "Water [m3]: {:.8g} at the start, {}{:.4g} of rain and {:.4g} from a lake beyond open sides; now {:.8g} "
         "free{}, "
         "{:.4g} infiltrated, {:.4g} left; residual {:.1e}.\n\n",
-        w.given, fed, w.rained, w.entered, w.free, in_columns, w.infiltrated, w.left, w.residual);
+        w.given, fed, w.rained, w.entered, w.free, in_particles, w.infiltrated, w.left, w.residual);
 }
 
 std::string budgets(const RunRecord& r) {
@@ -300,14 +302,15 @@ std::vector<std::size_t> shown_barriers(const RunRecord& r) {
     return shown;
 }
 
-/// Structured columns meet barriers as walls, and only the sum of their forces is known.
+/// Structured particles meet barriers as walls, and only the sum of their forces is known.
 std::string barriers_of_structure(const RunRecord& r) {
     std::string text = "## Barriers\n\n";
     for (const BarrierSummary& b : r.barriers) text += fmt::format("- {}\n", b.name);
     const Breakage& of = *r.extras.breakage;
     return text +
            fmt::format(
-               "\nStructured columns meet a barrier as an upright box of any height, which pushes and rubs. Since the "
+               "\nStructured particles meet a barrier as an upright box of any height, which pushes and rubs. Since "
+               "the "
                "start all barriers, with the walls along closed sides, took an impulse of {:.4g} N s in x and {:.4g} N "
                "s "
                "in y. What each of them took, contact times and run-up are not measured.\n\n",
@@ -399,7 +402,7 @@ std::string barriers(const RunRecord& r) {
             "depth at a face first exceeds {:.4g} m "
             "(`output.footprint_depth`); of walls "
             "along lines and of meshes it is not known. Forces are "
-            "measured on 3D points only ([[stage]]); columns take a barrier for ground. Over it: columns whose "
+            "measured on 3D points only ([[stage]]); particles take a barrier for ground. Over it: particles whose "
             "middle came onto it.\n",
             r.footprint_depth);
     return text + "\n";
@@ -420,7 +423,7 @@ std::string sections(const RunRecord& r) {
                             s.integral);
     }
     return text +
-           "\nThe volume is that of the columns that passed, each with the mass that it had there, and is exact for "
+           "\nThe volume is that of the particles that passed, each with the mass that it had there, and is exact for "
            "them. Beyond the line some of it may have become bed, or the flow may have taken up more. The discharge is "
            "that of the nodes. "
            "Sediment is the solid part of the volume: `material.bed.solid_fraction` of it where the bed law has one, "

@@ -25,7 +25,7 @@ public:
           times_(particle_times(source.run_dir)),
           loads_(barrier_times(source.run_dir)),
           meshes_(read_barrier_meshes(source.run_dir)) {
-        if (!times_.empty()) named_ = read_particles(source.run_dir, -1).columns.count("model") > 0;
+        if (!times_.empty()) named_ = read_particles(source.run_dir, -1).arrays.count("model") > 0;
     }
 
     Index count() const { return static_cast<Index>(times_.size()); }
@@ -72,8 +72,8 @@ public:
 
     Moment3d moment(Index number) const {
         LoadedParticles particles = read_particles(source_.run_dir, number);
-        if (named_ && particles.columns.count("model") == 0)
-            particles.columns["model"].assign(static_cast<std::size_t>(particles.count), 0.0);
+        if (named_ && particles.arrays.count("model") == 0)
+            particles.arrays["model"].assign(static_cast<std::size_t>(particles.count), 0.0);
         return moment_3d(particles, barriers(time(number)));
     }
 
@@ -135,7 +135,7 @@ private:
     const FigureSource& source_;
     std::vector<double> times_, loads_;
     BarrierMeshes meshes_;
-    bool named_ = false;  ///< the last frame says which are points; then frames that do not have columns only
+    bool named_ = false;  ///< the last frame says which are points; then frames that do not have particles only
 };
 
 bool has_points(const FigureSource& source) {
@@ -176,7 +176,7 @@ void add_some(const Moment3d& moment, std::vector<Vec3>& places) {
     constexpr std::size_t kMost = 500;
     std::vector<Vec3> all;
     for (const auto& piece : moment.material)
-        if (!piece.is_column) all.push_back(piece.place);
+        if (!piece.is_particle) all.push_back(piece.place);
     std::sort(all.begin(), all.end(), [](const Vec3& a, const Vec3& b) { return a.z() < b.z(); });
     const std::size_t count = all.size() - all.size() / 100, step = count / kMost + 1;
     for (std::size_t k = 0; k < count; k += step) places.push_back(all[k]);

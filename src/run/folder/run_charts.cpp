@@ -246,7 +246,7 @@ ChartFigure barrier_chart(const FigureSource& source, const std::string& name, c
     over.curves = {curve("volume that was over it", t, table.column("overtopped"))};
     if (has_finite(table, "run_up")) figure.panels.push_back(up);
     if (has_values(table, "overtopped")) figure.panels.push_back(over);
-    if (!table.has("fx")) return figure;  // columns alone: no forces
+    if (!table.has("fx")) return figure;  // particles alone: no forces
     const auto over_s = source.mean_over.find(name);
     const std::string of = over_s == source.mean_over.end() ? "" : fmt::format(" over {:.3g} s", over_s->second);
     mean.curves = {curve("horizontal, mean" + of, t, table.column("mean_force"))};

@@ -289,7 +289,7 @@ Json means_json(const std::vector<MeanForce>& means) {
 Json barriers_json(const std::vector<BarrierSummary>& barriers) {
     Json list = Json::array();
     for (const BarrierSummary& b : barriers) {
-        const bool measured = b.blur > 0.0;  // forces; columns alone tell none
+        const bool measured = b.blur > 0.0;  // forces; particles alone tell none
         const auto if_measured = [&](double number) { return measured ? Json(number) : Json(nullptr); };
         list.push_back({{"name", b.name},
                         {"first_contact", b.first_contact >= 0.0 ? Json(b.first_contact) : Json(nullptr)},

@@ -39,11 +39,11 @@ Index choose_frame(const std::vector<double>& times, double time, const fs::path
 
 namespace {
 
-/// Component c of a column.
+/// Component c of an array.
 template <class Loaded>
 std::vector<double> component(const Loaded& loaded, const std::string& name, std::size_t c = 0) {
     const auto stride = static_cast<std::size_t>(loaded.components.at(name));
-    const std::vector<double>& all = loaded.columns.at(name);
+    const std::vector<double>& all = loaded.arrays.at(name);
     std::vector<double> values;
     values.reserve(all.size() / stride);
     for (std::size_t k = c; k < all.size(); k += stride) values.push_back(all[k]);
@@ -71,71 +71,71 @@ void require_fields(const Loaded& loaded, const fs::path& frames) {
                         frames.string(), missing));
 }
 
-/// From a 3D stage on, particles are no columns any more.
+/// From a 3D stage on, what the frames call particles are 3D points.
 template <class Loaded>
-void require_columns(const Loaded& loaded, const fs::path& frames) {
-    const auto model = loaded.columns.find("model");
-    if (model == loaded.columns.end()) return;
+void require_particles(const Loaded& loaded, const fs::path& frames) {
+    const auto model = loaded.arrays.find("model");
+    if (model == loaded.arrays.end()) return;
     if (std::none_of(model->second.begin(), model->second.end(), [](double m) { return m != 0.0; })) return;
     throw UserError(
-        fmt::format("{}: its particles are 3D points already at that time; expected columns; give a --time "
+        fmt::format("{}: its particles are 3D points already at that time; expected depth-averaged ones; give a --time "
                     "before the stage in "
                     "space begins, or after it has ended",
                     frames.string()));
 }
 
 /// No file of ours has such numbers; one that was changed or damaged may.
-void require_valid(const FlowColumns& columns, const fs::path& frames) {
+void require_valid(const FlowParticles& particles, const fs::path& frames) {
     const auto refuse = [&](std::size_t p, const char* what, double found, const char* expected) {
         throw UserError(fmt::format("{}: {} of particle {} is {}; expected {}; run the case again", frames.string(),
-                                    what, columns.id[p], found, expected));
+                                    what, particles.id[p], found, expected));
     };
-    for (std::size_t p = 0; p < columns.count(); ++p) {
+    for (std::size_t p = 0; p < particles.count(); ++p) {
         const std::pair<const char*, double> numbers[] = {
-            {"depth", columns.depth[p]}, {"mass", columns.mass[p]},   {"volume", columns.volume[p]},
-            {"velocity", columns.vx[p]}, {"velocity", columns.vy[p]}, {"pressure", columns.bed_pressure[p]},
-            {"position", columns.x[p]},  {"position", columns.y[p]},  {"position", columns.bed[p]}};
+            {"depth", particles.depth[p]}, {"mass", particles.mass[p]},   {"volume", particles.volume[p]},
+            {"velocity", particles.vx[p]}, {"velocity", particles.vy[p]}, {"pressure", particles.bed_pressure[p]},
+            {"position", particles.x[p]},  {"position", particles.y[p]},  {"position", particles.bed[p]}};
         for (const auto& [what, number] : numbers)
             if (!std::isfinite(number)) refuse(p, what, number, "a finite number");
-        if (columns.depth[p] < 0.0) refuse(p, "depth", columns.depth[p], "0 or more");
-        if (columns.mass[p] <= 0.0) refuse(p, "mass", columns.mass[p], "more than 0");
-        if (columns.volume[p] <= 0.0) refuse(p, "volume", columns.volume[p], "more than 0");
+        if (particles.depth[p] < 0.0) refuse(p, "depth", particles.depth[p], "0 or more");
+        if (particles.mass[p] <= 0.0) refuse(p, "mass", particles.mass[p], "more than 0");
+        if (particles.volume[p] <= 0.0) refuse(p, "volume", particles.volume[p], "more than 0");
     }
 }
 
 /// The run's bed is smoother than the terrain (the scheme averages it over a cell). Where the run says how fast a particle
 /// climbs, the slope along its way follows that.
-void follow_climb(FlowColumns& columns, const std::vector<double>& climb) {
+void follow_climb(FlowParticles& particles, const std::vector<double>& climb) {
     if (std::all_of(climb.begin(), climb.end(), [](double w) { return w == 0.0; })) return;  // shallow terrain has none
-    for (std::size_t p = 0; p < columns.count(); ++p) {
-        const double vx = columns.vx[p], vy = columns.vy[p], v2 = vx * vx + vy * vy;
+    for (std::size_t p = 0; p < particles.count(); ++p) {
+        const double vx = particles.vx[p], vy = particles.vy[p], v2 = vx * vx + vy * vy;
         if (!(v2 > 0.0) || !std::isfinite(climb[p])) continue;
-        const double wrong = (climb[p] - vx * columns.slope_x[p] - vy * columns.slope_y[p]) / v2;
-        columns.slope_x[p] += wrong * vx;
-        columns.slope_y[p] += wrong * vy;
+        const double wrong = (climb[p] - vx * particles.slope_x[p] - vy * particles.slope_y[p]) / v2;
+        particles.slope_x[p] += wrong * vx;
+        particles.slope_y[p] += wrong * vy;
     }
 }
 
 template <class Loaded>
-FlowColumns columns_of(const Loaded& loaded, const fs::path& frames) {
+FlowParticles particles_of(const Loaded& loaded, const fs::path& frames) {
     require_fields(loaded, frames);
-    require_columns(loaded, frames);
-    FlowColumns columns;
-    columns.x = component(loaded, "position", 0);
-    columns.y = component(loaded, "position", 1);
-    columns.bed = component(loaded, "position", 2);  // the free surface so far
-    columns.depth = component(loaded, "depth");
-    for (std::size_t p = 0; p < columns.count(); ++p) columns.bed[p] -= columns.depth[p];
-    columns.vx = component(loaded, "velocity", 0);
-    columns.vy = component(loaded, "velocity", 1);
-    columns.mass = component(loaded, "mass");
-    columns.volume = component(loaded, "volume");
-    columns.bed_pressure = component(loaded, "pressure");
-    columns.id = component(loaded, "id");
+    require_particles(loaded, frames);
+    FlowParticles particles;
+    particles.x = component(loaded, "position", 0);
+    particles.y = component(loaded, "position", 1);
+    particles.bed = component(loaded, "position", 2);  // the free surface so far
+    particles.depth = component(loaded, "depth");
+    for (std::size_t p = 0; p < particles.count(); ++p) particles.bed[p] -= particles.depth[p];
+    particles.vx = component(loaded, "velocity", 0);
+    particles.vy = component(loaded, "velocity", 1);
+    particles.mass = component(loaded, "mass");
+    particles.volume = component(loaded, "volume");
+    particles.bed_pressure = component(loaded, "pressure");
+    particles.id = component(loaded, "id");
     if (loaded.components.count("stress") && loaded.components.at("stress") == 3)
-        columns.stress = loaded.columns.at("stress");
-    require_valid(columns, frames);
-    return columns;
+        particles.stress = loaded.arrays.at("stress");
+    require_valid(particles, frames);
+    return particles;
 }
 
 Raster vtk_bed(const fs::path& run_dir) {
@@ -180,11 +180,11 @@ RunState state_of_vtk(const fs::path& run_dir, double time) {
     const Index number = choose_frame(times, time, list);
     const LoadedParticles particles = read_particles(run_dir, number);
     state.time = particles.time;
-    state.columns = columns_of(particles, list);
+    state.particles = particles_of(particles, list);
     state.bed = vtk_bed(run_dir);
     state.free_water = free_water_of(run_dir, state.time);
-    take_slopes(state.columns, state.bed);
-    follow_climb(state.columns, component(particles, "velocity", 2));
+    take_slopes(state.particles, state.bed);
+    follow_climb(state.particles, component(particles, "velocity", 2));
     state.frames = list.string();
     return state;
 }
@@ -208,10 +208,10 @@ RunState state_of_hdf5(const fs::path& run_dir, double time) {
     StoredParticles particles =
         between_writes([&] { return read_hdf5_particles(file, choose_frame(hdf5_frame_times(file), time, file)); });
     state.time = particles.time;
-    state.columns = columns_of(particles, file);
+    state.particles = particles_of(particles, file);
     state.bed = std::move(particles.bed);
-    take_slopes(state.columns, state.bed);
-    follow_climb(state.columns, component(particles, "velocity", 2));
+    take_slopes(state.particles, state.bed);
+    follow_climb(state.particles, component(particles, "velocity", 2));
     state.frames = file.string();
     return state;
 }
@@ -222,7 +222,7 @@ RunState read_run_state(const fs::path& run_dir, double time) {
     const bool vtk = fs::exists(run_dir / "particles.pvd");
     if (!vtk && !fs::exists(run_dir / "run.h5")) throw no_frames(run_dir, "particles.pvd");
     RunState state = vtk ? state_of_vtk(run_dir, time) : state_of_hdf5(run_dir, time);
-    if (state.columns.count() == 0)
+    if (state.particles.count() == 0)
         throw UserError(
             fmt::format("{}: has no particles at {:.6g} s: all is free water, or has left the terrain; give an earlier "
                         "--time",

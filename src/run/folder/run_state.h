@@ -4,16 +4,16 @@
 #include <string>
 #include <vector>
 
-#include "convert/flow_columns.h"
+#include "convert/flow_particles.h"
 
 namespace frana {
 
 struct RunState {
     double time = 0.0;        ///< of the frame that was taken [s]
-    FlowColumns columns;      ///< the run's particles, with the slopes of `bed`
+    FlowParticles particles;  ///< the run's particles, with the slopes of `bed`
     Raster bed;               ///< with the run's coordinate system as far as it is known
     std::string frames;       ///< the file that lists the frames
-    double free_water = 0.0;  ///< besides the particles, in VTK frames; nothing of it is in `columns` [m3]
+    double free_water = 0.0;  ///< besides the particles, in VTK frames; nothing of it is in `particles` [m3]
 };
 
 /// Position of the frame nearest to `time` [s]. Throws UserError where there are none, and before the first or past the

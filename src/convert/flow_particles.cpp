@@ -1,4 +1,4 @@
-#include "convert/flow_columns.h"
+#include "convert/flow_particles.h"
 
 #include <cmath>
 
@@ -7,10 +7,10 @@
 namespace frana {
 namespace {
 
-constexpr std::vector<double> FlowColumns::*kNumbers[] = {
-    &FlowColumns::x,       &FlowColumns::y,       &FlowColumns::bed,          &FlowColumns::depth,
-    &FlowColumns::slope_x, &FlowColumns::slope_y, &FlowColumns::vx,           &FlowColumns::vy,
-    &FlowColumns::mass,    &FlowColumns::volume,  &FlowColumns::bed_pressure, &FlowColumns::id};
+constexpr std::vector<double> FlowParticles::*kNumbers[] = {
+    &FlowParticles::x,       &FlowParticles::y,       &FlowParticles::bed,          &FlowParticles::depth,
+    &FlowParticles::slope_x, &FlowParticles::slope_y, &FlowParticles::vx,           &FlowParticles::vy,
+    &FlowParticles::mass,    &FlowParticles::volume,  &FlowParticles::bed_pressure, &FlowParticles::id};
 
 /// Slope between the elevations half a cell before, at, and half a cell behind a point.
 double quotient(double before, double here, double behind, double cell) {
@@ -22,11 +22,11 @@ double quotient(double before, double here, double behind, double cell) {
 
 }  // namespace
 
-void FlowColumns::reserve(std::size_t columns) {
-    for (const auto member : kNumbers) (this->*member).reserve(columns);
+void FlowParticles::reserve(std::size_t particles) {
+    for (const auto member : kNumbers) (this->*member).reserve(particles);
 }
 
-void FlowColumns::take(const FlowColumns& other, std::size_t k) {
+void FlowParticles::take(const FlowParticles& other, std::size_t k) {
     for (const auto member : kNumbers) (this->*member).push_back((other.*member)[k]);
     if (!other.domain.empty()) domain.push_back(other.domain[k]);
     if (other.stress.empty()) return;
@@ -39,13 +39,13 @@ Vec2 bed_gradient(const Raster& bed, double x, double y) {
             quotient(bed_elevation(bed, x, y - half), here, bed_elevation(bed, x, y + half), bed.geometry.cell)};
 }
 
-void take_slopes(FlowColumns& columns, const Raster& bed) {
-    columns.slope_x.resize(columns.count());
-    columns.slope_y.resize(columns.count());
-    for (std::size_t p = 0; p < columns.count(); ++p) {
-        const Vec2 slope = bed_gradient(bed, columns.x[p], columns.y[p]);
-        columns.slope_x[p] = slope[0];
-        columns.slope_y[p] = slope[1];
+void take_slopes(FlowParticles& particles, const Raster& bed) {
+    particles.slope_x.resize(particles.count());
+    particles.slope_y.resize(particles.count());
+    for (std::size_t p = 0; p < particles.count(); ++p) {
+        const Vec2 slope = bed_gradient(bed, particles.x[p], particles.y[p]);
+        particles.slope_x[p] = slope[0];
+        particles.slope_y[p] = slope[1];
     }
 }
 

@@ -7,7 +7,7 @@
 #include "checks/fuzz/draw.h"
 #include "checks/fuzz/draw_3d.h"
 
-namespace frana::stress {
+namespace frana::fuzz {
 namespace {
 
 /// The stage's table.
@@ -91,10 +91,10 @@ double draw_3d(Dice& dice, Draft& draft, const std::string& stage) {
     return cell;
 }
 
-void draw_solid_flow(Dice& dice, Draft& draft) {
+void draw_mpm3d(Dice& dice, Draft& draft) {
     draw_ground(dice, draft);
     draw_release(dice, draft, {0.15, 3.0, 120});
     draw_3d(dice, draft, "stage#0");
 }
 
-}  // namespace frana::stress
+}  // namespace frana::fuzz

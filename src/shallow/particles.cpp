@@ -1,4 +1,4 @@
-#include "shallow/columns.h"
+#include "shallow/particles.h"
 
 #include <omp.h>
 
@@ -7,25 +7,25 @@
 namespace frana {
 
 /// All arrays of the points.
-const std::vector<PointField>& TileSorter::fields_of(Columns& columns) {
+const std::vector<PointField>& TileSorter::fields_of(Particles& particles) {
     fields_.clear();
-    columns.each([&](auto& column) { fields_.push_back(&column); });
-    fields_.push_back(&columns.id);
+    particles.each([&](auto& array) { fields_.push_back(&array); });
+    fields_.push_back(&particles.id);
     return fields_;
 }
 
-void TileSorter::plan(const Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone,
+void TileSorter::plan(const Particles& particles, const TileGrid& grid, const std::vector<std::uint8_t>& gone,
                       ActiveTiles& active) {
-    order_.find_tiles(columns.count(), grid.tiles(), [&](Index p) {
+    order_.find_tiles(particles.count(), grid.tiles(), [&](Index p) {
         if (!gone.empty() && gone[static_cast<std::size_t>(p)]) return Index{-1};
-        return grid.tile_of(columns.x[p], columns.y[p]);
+        return grid.tile_of(particles.x[p], particles.y[p]);
     });
-    wake(columns.count(), active);
+    wake(particles.count(), active);
     order_.lay_out(active);
     list_tiles(grid, active);
 }
 
-void TileSorter::carry_out(Columns& columns) { order_.permute(fields_of(columns)); }
+void TileSorter::carry_out(Particles& particles) { order_.permute(fields_of(particles)); }
 
 /// Tiles that points leave or enter do not sleep.
 void TileSorter::wake(Index count, ActiveTiles& active) {
@@ -43,10 +43,10 @@ void TileSorter::wake(Index count, ActiveTiles& active) {
     for (Index p = active.count() > 0 ? active.begin[active.count()] : 0; p < count; ++p) wake_tile(key[p]);
 }
 
-void TileSorter::drop(Columns& columns, const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
-    order_.retain_places(columns.count(), gone, active);
-    order_.close_gaps(fields_of(columns));
-    columns.resize(static_cast<Index>(order_.order().size()));
+void TileSorter::drop(Particles& particles, const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
+    order_.retain_places(particles.count(), gone, active);
+    order_.close_gaps(fields_of(particles));
+    particles.resize(static_cast<Index>(order_.order().size()));
 }
 
 void TileSorter::list_tiles(const TileGrid& grid, ActiveTiles& active) {

@@ -1,44 +1,44 @@
-#include "coupling/walled_columns.h"
+#include "coupling/walled_particles.h"
 
 namespace frana {
 
-WalledColumns::WalledColumns(const Scene& scene, Start start) : density_(scene.density), watch_(scene) {
+WalledParticles::WalledParticles(const Scene& scene, Start start) : density_(scene.density), watch_(scene) {
     if (scene.wider)
-        growing_ = std::make_unique<GrowingColumns>(scene, start);
+        growing_ = std::make_unique<GrowingParticles>(scene, start);
     else
         hold_all(scene, start);
-    columns().note_parents();
-    if (start == Start::placed) watch_.sample_columns(columns(), density_);
+    particles().note_parents();
+    if (start == Start::placed) watch_.sample_particles(particles(), density_);
 }
 
-void WalledColumns::hold_all(Scene scene, Start start) {
+void WalledParticles::hold_all(Scene scene, Start start) {
     footings_ = stand_in(scene, barrier_nodes(scene), 0, 0);
     whole_ = std::make_unique<DepthAveraged>(scene, start);
 }
 
-std::vector<std::string> WalledColumns::remarks() const {
+std::vector<std::string> WalledParticles::remarks() const {
     std::vector<std::string> all = inner().remarks();
     for (const std::string& remark : remarks_on(footings_)) all.push_back(remark);
     for (const std::string& remark : watch_.remarks()) all.push_back(remark);
     return all;
 }
 
-void WalledColumns::advance(double until) {
+void WalledParticles::advance(double until) {
     const double before = inner().status().time;
     inner().advance(until);
-    if (watch_.is_due(columns(), before, until))
-        timed_("barriers", [&] { watch_.sample_columns(columns(), density_); });
+    if (watch_.is_due(particles(), before, until))
+        timed_("barriers", [&] { watch_.sample_particles(particles(), density_); });
 }
 
-std::vector<PhaseTime> WalledColumns::timings() const {
+std::vector<PhaseTime> WalledParticles::timings() const {
     std::vector<PhaseTime> all = inner().timings();
     for (const PhaseTime& phase : timed_.times()) all.push_back(phase);
     return all;
 }
 
-void WalledColumns::serialize(Archive& archive) {
+void WalledParticles::serialize(Archive& archive) {
     inner().serialize(archive);
-    columns().note_parents();  // a larger part is another object
+    particles().note_parents();  // a larger part is another object
     watch_.serialize(archive);
     const Archive::Part part(archive, "walled_clock");
     timed_.serialize(archive);

@@ -21,17 +21,17 @@ struct Carried {
 
     template <class Self, class Visit>
     static void each(Self& s, Visit&& visit) {
-        for (auto* column : {&s.vx, &s.vy, &s.cxx, &s.cxy, &s.cyx, &s.cyy, &s.r1x, &s.r1y, &s.r2x, &s.r2y, &s.depth})
-            visit(*column);
+        for (auto* array : {&s.vx, &s.vy, &s.cxx, &s.cxy, &s.cyx, &s.cyy, &s.r1x, &s.r1y, &s.r2x, &s.r2y, &s.depth})
+            visit(*array);
     }
 };
 
-/// Columns of material. Positions and domain edges are in cells (from node (0, 0)); all else is SI. Positions
-/// and masses are always in double precision: a step moves a point by little, and mass is exact.
-struct Columns : Carried<double> {
+/// Particles, each a column of material. Positions and domain edges are in cells (from node (0, 0)); all else is SI.
+/// Positions and masses are always in double precision: a step moves a point by little, and mass is exact.
+struct Particles : Carried<double> {
     Array x, y;             ///< position [cells]
     Array mass;             ///< [kg]
-    Carried<float> narrow;  ///< with scheme.precision = "float" instead of the base's columns, which are empty then
+    Carried<float> narrow;  ///< with scheme.precision = "float" instead of the base's arrays, which are empty then
     std::vector<std::int64_t> id;  ///< constant through sorting; children of a split get new ones
     bool single = false;           ///< what points carry is in `narrow`
 
@@ -57,7 +57,7 @@ struct Columns : Carried<double> {
         return single ? work(float{}) : work(double{});
     }
 
-    /// The one list of floating-point columns in use, for sorting and growing.
+    /// The one list of floating-point arrays in use, for sorting and growing.
     template <class Visit>
     void each(Visit&& visit) {
         each_of(*this, visit);
@@ -70,11 +70,11 @@ struct Columns : Carried<double> {
     void halve(Index p) { mass[p] *= 0.5; }
     Index bytes() const {
         Index sum = allocated(id);
-        each([&](const auto& column) { sum += allocated(column); });
+        each([&](const auto& array) { sum += allocated(array); });
         return sum;
     }
     void resize(Index count) {
-        each([&](auto& column) { resize_sparingly(column, static_cast<std::size_t>(count)); });
+        each([&](auto& array) { resize_sparingly(array, static_cast<std::size_t>(count)); });
         resize_sparingly(id, static_cast<std::size_t>(count));
     }
 
@@ -91,7 +91,7 @@ private:
     }
 };
 
-/// A column that left at an exit where that is noted, as it was when it left.
+/// A particle that left at an exit where that is noted, as it was when it left.
 struct Departed {
     std::int64_t id;
     double x, y;                     ///< position [cells]
@@ -103,24 +103,25 @@ struct Departed {
     Edges edges;                     ///< of its domain [cells]
 };
 
-/// Sorts columns by tile; points marked in `gone` are dropped. Needs no memory once warmed up.
+/// Sorts particles by tile; points marked in `gone` are dropped. Needs no memory once warmed up.
 class TileSorter {
 public:
-    /// Sorts `columns` and rebuilds `active`. Same bits for any number of threads.
+    /// Sorts `particles` and rebuilds `active`. Same bits for any number of threads.
     /// `gone` (one byte per particle, may be empty) marks particles to drop.
-    void sort(Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
-        plan(columns, grid, gone, active);
-        carry_out(columns);
+    void sort(Particles& particles, const TileGrid& grid, const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
+        plan(particles, grid, gone, active);
+        carry_out(particles);
     }
-    /// The same in two, so that points can be dropped between: `active` and order() first, then the columns.
-    void plan(const Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
-    void carry_out(Columns& columns);
+    /// The same in two, so that points can be dropped between: `active` and order() first, then the particles.
+    void plan(const Particles& particles, const TileGrid& grid, const std::vector<std::uint8_t>& gone,
+              ActiveTiles& active);
+    void carry_out(Particles& particles);
     /// Of a plan: the point that will lie at each place.
     const std::vector<std::int32_t>& order() const { return order_.order(); }
     /// Leaves points marked in `gone` out of a plan.
     void leave_out(const std::vector<std::uint8_t>& gone, ActiveTiles& active) { order_.leave_out(gone, active); }
     /// Drops the points marked in `gone`; the order and tiles of the others stay.
-    void drop(Columns& columns, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
+    void drop(Particles& particles, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
     /// Makes `active` whole from its tiles and their ranges.
     void list_tiles(const TileGrid& grid, ActiveTiles& active);
     /// Memory that grows with the points [bytes].
@@ -129,7 +130,7 @@ public:
 private:
     void wake(Index count, ActiveTiles& active);
     static void list_runs(Index width, ActiveTiles& active);
-    const std::vector<PointField>& fields_of(Columns& columns);
+    const std::vector<PointField>& fields_of(Particles& particles);
 
     PointOrder order_;
     std::vector<PointField> fields_;

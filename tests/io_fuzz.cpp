@@ -3,15 +3,14 @@
 
 #include "catch.h"
 #include "checks/fuzz/draw.h"
-#include "frana_stress_figure.h"
-#include "frana_stress_save.h"
+#include "frana_fuzz_figure.h"
+#include "frana_fuzz_save.h"
 #include "fresh_folder.h"
 #include "io/gdal_reader.h"
 #include "program.h"
 #include "scene/build_scene.h"
 
 using namespace frana;
-using namespace frana::stress;
 
 namespace {
 
@@ -25,12 +24,12 @@ bool same_values(const std::vector<double>& a, const std::vector<double>& b) {
 
 }  // namespace
 
-TEST_CASE("A saved draft of any model is read back as the same scene to the last bit", "[stress][io]") {
+TEST_CASE("A saved draft of any model is read back as the same scene to the last bit", "[fuzz][io]") {
     Index with_velocity = 0, with_exits = 0, with_rain = 0;
-    for (const Model model : all_models())
-        for (std::uint64_t n = 0; n < (model == Model::depth_averaged ? 60u : 15u); ++n) {
+    for (const fuzz::Model model : fuzz::all_models())
+        for (std::uint64_t n = 0; n < (model == fuzz::Model::depth_averaged ? 60u : 15u); ++n) {
             const FreshFolder folder;
-            const Draft draft = draw(model, 4, n);
+            const fuzz::Draft draft = fuzz::draw(model, 4, n);
             save_draft(folder.path(), draft, {"speed", 2.0, 7, 0.5, "as found"});
             CAPTURE(n, toml_of(draft));
             const Scene drawn = scene_of(draft);
@@ -59,10 +58,10 @@ TEST_CASE("A saved draft of any model is read back as the same scene to the last
     CHECK(with_rain > 0);
 }
 
-TEST_CASE("A saved case says how it is watched", "[stress][io]") {
+TEST_CASE("A saved case says how it is watched", "[fuzz][io]") {
     const FreshFolder folder;
-    Draft draft = draw(4, 0);
-    draft.claims = {true, Mirror::diagonal, true, true};
+    fuzz::Draft draft = fuzz::draw(4, 0);
+    draft.claims = {true, fuzz::Mirror::diagonal, true, true};
     draft.steps = 9;
     CHECK(replay_options(draft) == "--steps 9 --rests --mirror diagonal --same-threads --same-resumed");
     save_draft(folder.path(), draft, {"rest", 2.0, 7, 0.5, "moved"});
@@ -72,7 +71,7 @@ TEST_CASE("A saved case says how it is watched", "[stress][io]") {
     CHECK(text_of(folder.path() / "particles.csv").find("id,x,y") == 0);
 }
 
-TEST_CASE("frana stress runs scenes, counts them and writes JSON", "[stress][io]") {
+TEST_CASE("frana stress runs scenes, counts them and writes JSON", "[fuzz][io]") {
     const FreshFolder folder;
     const Outcome outcome =
         call_frana(folder.path(), "stress --scenes 3 --seed 12 --seconds 1e6 --shrunk 0 --json s.json");
@@ -86,7 +85,7 @@ TEST_CASE("frana stress runs scenes, counts them and writes JSON", "[stress][io]
     CHECK((json["failures"].empty() == (outcome.code == 0)));
 }
 
-TEST_CASE("frana stress draws the models that it is told, and prints the mix", "[stress][io]") {
+TEST_CASE("frana stress draws the models that it is told, and prints the mix", "[fuzz][io]") {
     const FreshFolder folder;
     const Outcome outcome = call_frana(
         folder.path(), "stress --model water,staged --scenes 4 --seed 12 --seconds 1e6 --shrunk 0 --json s.json");
@@ -105,9 +104,9 @@ TEST_CASE("frana stress draws the models that it is told, and prints the mix", "
     CHECK(wrong.err.find("--model: found \"ice\"; expected all, or some of depth_averaged") != std::string::npos);
 }
 
-TEST_CASE("frana stress --case watches a case, and sees a claim that does not hold", "[stress][io]") {
+TEST_CASE("frana stress --case watches a case, and sees a claim that does not hold", "[fuzz][io]") {
     const FreshFolder folder;
-    Draft draft;
+    fuzz::Draft draft;
     const GridGeometry grid{16, 16, 0.0, 0.0, 1.0};
     Raster depth = Raster::filled(grid, Raster::nodata);
     for (Index j = 6; j < 10; ++j)
@@ -126,10 +125,10 @@ TEST_CASE("frana stress --case watches a case, and sees a claim that does not ho
     CHECK(wrong.err.find("--mirror: found \"z\"; expected x, y or diagonal") != std::string::npos);
 }
 
-TEST_CASE("The map of stable steps is drawn", "[stress][io]") {
+TEST_CASE("The map of stable steps is drawn", "[fuzz][io]") {
     const FreshFolder folder;
-    std::vector<CflRow> rows;
-    for (const Method& method : cfl_methods()) rows.push_back({method, 0.1 * method.per_side, ""});
+    std::vector<fuzz::CflRow> rows;
+    for (const fuzz::Method& method : fuzz::cfl_methods()) rows.push_back({method, 0.1 * method.per_side, ""});
     draw_cfl_map(rows, folder.path() / "cfl.png");
     CHECK(std::filesystem::file_size(folder.path() / "cfl.png") > 10000);
 }

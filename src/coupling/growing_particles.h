@@ -1,15 +1,15 @@
 #pragma once
-// Columns on a part of a large terrain, which grows before they come near its edge.
+// Particles on a part of a large terrain, which grows before they come near its edge.
 #include "coupling/barriers.h"
 #include "coupling/wrapped_simulation.h"
 #include "shallow/depth_averaged.h"
 
 namespace frana {
 
-class GrowingColumns final : public WrappedSimulation {
+class GrowingParticles final : public WrappedSimulation {
 public:
     /// Of a scene that holds a part of its terrain (Scene::wider).
-    explicit GrowingColumns(const Scene& scene, Start start = Start::placed);
+    explicit GrowingParticles(const Scene& scene, Start start = Start::placed);
 
     void advance(double until) override;
     /// Of the nodes that material has come near to, and of places that are always shown.
@@ -19,17 +19,17 @@ public:
     const Raster* ground() const override { return &scene_.bed; }
     const Friction* friction() const override { return scene_.friction.get(); }
     void serialize(Archive& archive) override;
-    void add(const Seeds& columns) override;
+    void add(const Seeds& particles) override;
 
-    const NodeBox& held() const { return held_; }         ///< nodes of the whole terrain that it works on
-    DepthAveraged& columns() const { return *columns_; }  ///< others once the part has grown
+    const NodeBox& held() const { return held_; }             ///< nodes of the whole terrain that it works on
+    DepthAveraged& particles() const { return *particles_; }  ///< others once the part has grown
 
 private:
-    Simulation& inner() const override { return *columns_; }
+    Simulation& inner() const override { return *particles_; }
 
     void show_part();
     void find_barriers();
-    std::unique_ptr<DepthAveraged> columns_among_walls(Start start);
+    std::unique_ptr<DepthAveraged> particles_among_walls(Start start);
     void sample();
     NodeBox room_for(const NodeBox& worked, Index clear) const;
     void grow(const NodeBox& box);
@@ -43,7 +43,7 @@ private:
     NodeBox shown_;                           ///< nodes of the whole terrain that frames show
     std::vector<BarrierNode> barrier_nodes_;  ///< those of barriers, of the whole terrain
     Footings footings_;                       ///< of the barriers
-    std::unique_ptr<DepthAveraged> columns_;
+    std::unique_ptr<DepthAveraged> particles_;
     Index times_grown_ = 0;
     bool aside_ = false;  ///< it comes back to a state that was put aside: until then there is room enough
 };

@@ -10,8 +10,8 @@
 #include "checks/fuzz/campaign.h"
 #include "checks/fuzz/draw.h"
 #include "frana_commands.h"
-#include "frana_stress_figure.h"
-#include "frana_stress_save.h"
+#include "frana_fuzz_figure.h"
+#include "frana_fuzz_save.h"
 #include "io/gdal_reader.h"
 #include "run/interrupt.h"
 #include "scene/build_scene.h"
@@ -19,21 +19,19 @@
 namespace frana {
 namespace {
 
-using namespace stress;
-
-std::string text_of(const Violation& broken) {
+std::string text_of(const fuzz::Violation& broken) {
     return fmt::format("{} at step {}, t = {:.6g} s: {}", broken.invariant, broken.step, broken.time, broken.text);
 }
 
 /// A case file under watch. 1 when it breaks an invariant.
-int watch_case(const StressOptions& options) {
-    Claims claims;
+int watch_case(const FuzzOptions& options) {
+    fuzz::Claims claims;
     claims.rests = options.rests;
     claims.threads = options.same_threads;
     claims.resumes = options.same_resumed;
-    claims.mirror = mirror_of(options.mirror);
+    claims.mirror = fuzz::mirror_of(options.mirror);
     const Scene scene = build_scene(CaseFile::read(options.case_file), GdalReader());
-    const Verdict verdict = examine(scene, claims, options.steps);
+    const fuzz::Verdict verdict = examine(scene, claims, options.steps);
     fmt::print("{}: {} steps, {:.6g} s, up to {} particles\n", options.case_file.string(), verdict.steps, verdict.time,
                verdict.particles);
     for (const auto& [invariant, worst] : verdict.worst)
@@ -42,9 +40,9 @@ int watch_case(const StressOptions& options) {
     return verdict.broken ? 1 : 0;
 }
 
-int map_cfl(const StressOptions& options) {
-    std::vector<CflRow> rows;
-    for (const Method& method : cfl_methods()) {
+int map_cfl(const FuzzOptions& options) {
+    std::vector<fuzz::CflRow> rows;
+    for (const fuzz::Method& method : fuzz::cfl_methods()) {
         rows.push_back(cfl_row(method));
         fmt::print(stderr, "{}, {} points: {} ({})\n", method.name(), method.per_side * method.per_side,
                    rows.back().largest, rows.back().first_broken);
@@ -55,9 +53,9 @@ int map_cfl(const StressOptions& options) {
 }
 
 /// Saves what was shrunk, and says what became of it.
-void report(const stress::Failure& failure, const StressOptions& options) {
+void report(const fuzz::Failure& failure, const FuzzOptions& options) {
     fmt::print(stderr, "{} scene {}: {}\n", word_of(failure.model), failure.n, text_of(failure.found));
-    const Shrunk& shrunk = failure.shrunk;
+    const fuzz::Shrunk& shrunk = failure.shrunk;
     if (shrunk.trials == 0 || !shrunk.verdict.broken) return;
     const std::filesystem::path folder =
         options.out / fmt::format("stress-{}-{}-{}", word_of(failure.model), options.seed, failure.n);
@@ -81,10 +79,10 @@ std::set<std::string> known_failures(const std::filesystem::path& file) {
 }
 
 /// Failures that the list of known ones does not hold; says of known ones when they are mended.
-Index new_failures(const Campaign& campaign, const StressOptions& options) {
+Index new_failures(const fuzz::Campaign& campaign, const FuzzOptions& options) {
     std::set<std::string> known = known_failures(options.known);
     Index found = 0;
-    for (const stress::Failure& failure : campaign.failures)
+    for (const fuzz::Failure& failure : campaign.failures)
         if (known.erase(fmt::format("{} {} {} {}", options.seed, word_of(failure.model), failure.n,
                                     failure.found.invariant)) == 0)
             ++found;
@@ -103,19 +101,19 @@ Index new_failures(const Campaign& campaign, const StressOptions& options) {
 
 }  // namespace
 
-int stress_command(const StressOptions& options) {
+int fuzz_command(const FuzzOptions& options) {
     if (!options.case_file.empty()) return watch_case(options);
     if (options.cfl_map) return map_cfl(options);
-    Plan plan;
-    plan.models = models_of(options.models);
+    fuzz::Plan plan;
+    plan.models = fuzz::models_of(options.models);
     plan.seed = static_cast<std::uint64_t>(options.seed);
     plan.first = static_cast<std::uint64_t>(options.first);
     plan.scenes = options.scenes;
     plan.seconds = options.seconds;
     plan.most_shrunk = options.shrunk;
     const Interrupt interrupt(Interrupt::Listen::signals);
-    const Campaign campaign = run(
-        plan, [&](const stress::Failure& failure) { report(failure, options); }, [&] { return interrupt.requested(); });
+    const fuzz::Campaign campaign = run(
+        plan, [&](const fuzz::Failure& failure) { report(failure, options); }, [&] { return interrupt.requested(); });
     fmt::print("{}", table_of(campaign));
     if (!options.json.empty()) write_text(options.json, json_of(campaign));
     if (interrupt.requested()) throw Interrupted("interrupted; the scenes so far are above");

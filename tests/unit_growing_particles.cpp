@@ -1,11 +1,11 @@
-// Columns on a part of a large terrain: no result depends on what else of the terrain there is.
+// Particles on a part of a large terrain: no result depends on what else of the terrain there is.
 #include <memory>
 #include <sstream>
 
 #include "analytic_scene.h"
 #include "base/error.h"
 #include "catch.h"
-#include "coupling/walled_columns.h"
+#include "coupling/walled_particles.h"
 #include "fake_gis.h"
 #include "growing_slide.h"
 #include "observe/memory_archive.h"
@@ -19,7 +19,7 @@ using namespace frana;
 using namespace frana::test;
 
 TEST_CASE("A run on a part of a terrain has the same bits whatever lies beyond", "[terrain]") {
-    GrowingColumns large(slide_on_large()), cut(slide_on_cut());
+    GrowingParticles large(slide_on_large()), cut(slide_on_cut());
     const NodeBox begin = large.held();
     for (double time = 2.0, after = 0.0; after < 8.0; time += 2.0, after += large.held() == begin ? 0.0 : 1.0) {
         REQUIRE(time < 60.0);
@@ -42,7 +42,7 @@ TEST_CASE("A part that may not grow ends the run as refused, after the step that
     Scene scene = slide_on_large();
     scene.wider = std::make_shared<WiderTerrain>(
         WiderTerrain{kLarge, kBegin, [](const NodeBox&) -> Raster { throw UserError("dem.tif: cannot be read"); }, {}});
-    GrowingColumns part(scene);
+    GrowingParticles part(scene);
     Observers nobody;
     std::ostringstream stream;
     Progress progress(stream, Progress::Style::silent, scene.density);
@@ -61,7 +61,7 @@ TEST_CASE("Growing changes a run by round-off only", "[terrain]") {
     whole.bed = ground_on(kLarge);
     whole.wider.reset();
     DepthAveraged all(whole);
-    GrowingColumns part(slide_on_large());
+    GrowingParticles part(slide_on_large());
     const NodeBox begin = part.held();
     while (part.held() == begin) {
         all.advance(1e9), part.advance(1e9);
@@ -101,7 +101,7 @@ TEST_CASE("A part that grows onto holes holds all of the terrain, with the walls
     whole.hole_top = scene.hole_top;
     REQUIRE(whole.holes.count == 1);
 
-    GrowingColumns part(scene);
+    GrowingParticles part(scene);
     DepthAveraged all(whole);
     while (part.held() == begin) {
         part.advance(1e9), all.advance(1e9);
@@ -116,7 +116,7 @@ TEST_CASE("A part that grows onto holes holds all of the terrain, with the walls
     {
         MemoryArchive archive;
         part.serialize(archive);
-        GrowingColumns again(scene, Start::resumed);
+        GrowingParticles again(scene, Start::resumed);
         again.serialize(archive.rewind());
         for (int step = 0; step < 50; ++step) part.advance(1e9), again.advance(1e9);
         require_same(part, again);
@@ -129,7 +129,7 @@ TEST_CASE("A part that grows onto holes holds all of the terrain, with the walls
 }
 
 TEST_CASE("Frames of a part show what the flow has reached, and places that are always shown", "[terrain]") {
-    GrowingColumns part(slide_on_large());
+    GrowingParticles part(slide_on_large());
     const Frame start = part.frame();
     CHECK(start.grid.nx * start.grid.ny < 100 * 100);
     CHECK(start.grid.x0 < 4000.0 - 10.0);
@@ -150,20 +150,20 @@ TEST_CASE("Frames of a part show what the flow has reached, and places that are 
     auto wider = std::make_shared<WiderTerrain>(*scene.wider);
     wider->shown = {{3700.0, 900.0}, {3800.0, 950.0}};
     scene.wider = wider;
-    GrowingColumns with_places(scene);
+    GrowingParticles with_places(scene);
     const Frame shown = with_places.frame();
     CHECK(shown.grid.x0 <= 3700.0);
     CHECK(shown.grid.y0 <= 900.0);
 }
 
 TEST_CASE("A run on a part goes on from a saved state with the same bits, grown or not", "[terrain]") {
-    GrowingColumns run(slide_on_large());
+    GrowingParticles run(slide_on_large());
     const NodeBox begin = run.held();
     for (const bool grown : {false, true}) {
         while ((run.held() == begin) == grown || run.status().time < 3.0) run.advance(1e9);
         MemoryArchive archive;
         run.serialize(archive);
-        GrowingColumns again(slide_on_large(), Start::resumed);
+        GrowingParticles again(slide_on_large(), Start::resumed);
         again.serialize(archive.rewind());
         CHECK(again.held() == run.held());
         for (int step = 0; step < 50; ++step) run.advance(1e9), again.advance(1e9);
@@ -177,12 +177,12 @@ TEST_CASE("What may split is saved with a part that has grown", "[terrain]") {
         scene.scheme.split_min_mass = least;
         return scene;
     };
-    GrowingColumns run(slide(1.0)), splits(slide(0.02));
+    GrowingParticles run(slide(1.0)), splits(slide(0.02));
     const NodeBox begin = run.held();
     while (run.held() == begin) run.advance(1e9);
     MemoryArchive archive;
     run.serialize(archive);
-    GrowingColumns again(slide(1.0), Start::resumed);
+    GrowingParticles again(slide(1.0), Start::resumed);
     again.serialize(archive.rewind());
     for (int step = 0; step < 50; ++step) run.advance(1e9), again.advance(1e9);
     require_same(run, again);
@@ -191,7 +191,7 @@ TEST_CASE("What may split is saved with a part that has grown", "[terrain]") {
 }
 
 TEST_CASE("A run on a part comes back to a state that was put aside, also just before it grows", "[terrain]") {
-    GrowingColumns run(slide_on_large()), other(slide_on_large());
+    GrowingParticles run(slide_on_large()), other(slide_on_large());
     const NodeBox begin = run.held();
     MemoryState aside;
     while (other.held() == begin) {
@@ -246,25 +246,25 @@ TEST_CASE("Barriers stand on a part that grows as on all of the terrain: the sam
     Scene on_all = dammed(slide_on_large());
     on_all.bed = ground_on(kLarge);
     on_all.wider.reset();
-    WalledColumns large(dammed(slide_on_large())), cut(dammed(slide_on_cut())), all(on_all);
+    WalledParticles large(dammed(slide_on_large())), cut(dammed(slide_on_cut())), all(on_all);
     const Index west = large.ground()->geometry.nx;
     while (large.ground()->geometry.nx == west) {
-        for (WalledColumns* one : {&large, &cut, &all}) one->advance(1e9);
+        for (WalledParticles* one : {&large, &cut, &all}) one->advance(1e9);
         REQUIRE(large.status().time < 60.0);
     }
     MemoryArchive archive;
     large.serialize(archive);
-    WalledColumns again(dammed(slide_on_large()), Start::resumed);
+    WalledParticles again(dammed(slide_on_large()), Start::resumed);
     again.serialize(archive.rewind());
     CHECK(again.ground()->geometry == large.ground()->geometry);
     const double time = large.status().time + 8.0;
-    for (WalledColumns* one : {&large, &cut, &again, &all}) run_to(*one, time);
+    for (WalledParticles* one : {&large, &cut, &again, &all}) run_to(*one, time);
     require_same(large, cut);
     require_same(large, again);
     const BarrierLoad &load = large.loads()->barriers.at(0), &whole = all.loads()->barriers.at(0);
     CHECK(load.overtopped > 0.0);
     CHECK(load.run_up > 4.0);
-    for (const WalledColumns* one : {&cut, &again}) {
+    for (const WalledParticles* one : {&cut, &again}) {
         CHECK(one->loads()->barriers.at(0).overtopped == load.overtopped);
         CHECK(one->loads()->barriers.at(0).run_up == load.run_up);
     }

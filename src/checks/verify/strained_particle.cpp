@@ -1,4 +1,4 @@
-#include "checks/verify/strained_column.h"
+#include "checks/verify/strained_particle.h"
 
 #include <cmath>
 
@@ -8,8 +8,8 @@ namespace frana::verify {
 
 using constants::kDegree;
 
-ColumnMaterial unbroken_clay(double friction_deg, ColumnYield yield, double dilatancy_deg) {
-    ColumnMaterial m;
+StructuredMaterial unbroken_clay(double friction_deg, StructuredYield yield, double dilatancy_deg) {
+    StructuredMaterial m;
     m.young = 5e6;
     m.friction = friction_deg * kDegree, m.dilatancy = dilatancy_deg * kDegree;
     m.yield = yield;
@@ -17,20 +17,20 @@ ColumnMaterial unbroken_clay(double friction_deg, ColumnYield yield, double dila
     return m;
 }
 
-ColumnState strained(const ColumnLaw& law, int steps, const ColumnStep& each, double weight, double cohesion,
-                     ColumnState state) {
+StructuredState strained(const StructuredLaw& law, int steps, const StructuredStep& each, double weight,
+                         double cohesion, StructuredState state) {
     for (int n = 0; n < steps; ++n) law.update(each, weight, cohesion, state);
     return state;
 }
 
-ColumnState squeezed_alone(const ColumnLaw& law, double total, double weight, double cohesion) {
+StructuredState squeezed_alone(const StructuredLaw& law, double total, double weight, double cohesion) {
     constexpr int kSteps = 400;
-    ColumnState state;
+    StructuredState state;
     state.stress.zz = weight;
     for (int n = 0; n < kSteps; ++n) {
         const double dx = total / kSteps;
         double low = -std::abs(dx) * 3.0, high = std::abs(dx) * 3.0;
-        ColumnState next;
+        StructuredState next;
         for (int pass = 0; pass < 60; ++pass) {
             const double mid = 0.5 * (low + high);
             next = state;
@@ -46,21 +46,21 @@ double ShearError::size() const { return std::hypot(shear, along); }
 
 ShearError jaumann_shear_error(double gamma, int steps) {
     constexpr double kUnyielding = 1e12;  // cohesion [Pa]
-    const ColumnLaw law(unbroken_clay(28.0));
-    const ColumnStress s =
-        strained(law, steps, ColumnStep::of(0.0, gamma / steps, 0.0, 0.0, 1.0), 0.0, kUnyielding).stress;
+    const StructuredLaw law(unbroken_clay(28.0));
+    const StructuredStress s =
+        strained(law, steps, StructuredStep::of(0.0, gamma / steps, 0.0, 0.0, 1.0), 0.0, kUnyielding).stress;
     const double g = law.shear(), normal = 1.0 - std::cos(gamma);
     return {s.xy / g - std::sin(gamma), s.xx / g - normal, s.yy / g + normal};
 }
 
-double unconfined_strength(const ColumnLaw& law, double cohesion) {
-    if (law.material().yield == ColumnYield::plane_strain)
+double unconfined_strength(const StructuredLaw& law, double cohesion) {
+    if (law.material().yield == StructuredYield::plane_strain)
         return law.strength(cohesion) / (1.0 / std::sqrt(3.0) - law.alpha());
     const double phi = law.material().friction;
     return 2.0 * cohesion * std::cos(phi) / (1.0 - std::sin(phi));
 }
 
-double squeezed_strength(const ColumnLaw& law, double cohesion) {
+double squeezed_strength(const StructuredLaw& law, double cohesion) {
     return -squeezed_alone(law, -0.1, 0.0, cohesion).stress.xx;
 }
 

@@ -1,4 +1,4 @@
-#include "coupling/growing_columns.h"
+#include "coupling/growing_particles.h"
 
 #include <fmt/format.h>
 
@@ -27,11 +27,11 @@ void lay_over(Raster& bed, const Raster& part, Index i0, Index j0) {
 
 }  // namespace
 
-GrowingColumns::GrowingColumns(const Scene& scene, Start start)
+GrowingParticles::GrowingParticles(const Scene& scene, Start start)
     : scene_(scene), wider_(scene.wider), held_(wider_->held) {
-    scene_.wider.reset();  // the columns depend on nothing but what they have
+    scene_.wider.reset();  // the particles depend on nothing but what they have
     find_barriers();
-    columns_ = columns_among_walls(start);
+    particles_ = particles_among_walls(start);
     shown_ = cells_of(wider_->shown, wider_->grid);
     const std::vector<double>& volume = scene_.particles.volume;
     const double largest = volume.empty() ? 0.0 : *std::max_element(volume.begin(), volume.end());
@@ -41,31 +41,31 @@ GrowingColumns::GrowingColumns(const Scene& scene, Start start)
 }
 
 /// Barriers stand on the part that the run begins with. A larger one has the same tops, to the last bit.
-void GrowingColumns::find_barriers() {
+void GrowingParticles::find_barriers() {
     barrier_nodes_ = barrier_nodes(scene_);
     for (BarrierNode& node : barrier_nodes_) node.i += held_.i0, node.j += held_.j0;
 }
 
-std::unique_ptr<DepthAveraged> GrowingColumns::columns_among_walls(Start start) {
+std::unique_ptr<DepthAveraged> GrowingParticles::particles_among_walls(Start start) {
     if (barrier_nodes_.empty()) return std::make_unique<DepthAveraged>(scene_, start);
     Scene walled = scene_;
     footings_ = stand_in(walled, barrier_nodes_, held_.i0, held_.j0);
     return std::make_unique<DepthAveraged>(walled, start);
 }
 
-void GrowingColumns::advance(double until) {
-    columns_->advance(until);
+void GrowingParticles::advance(double until) {
+    particles_->advance(until);
     sample();
 }
 
-void GrowingColumns::add(const Seeds& columns) {
-    columns_->add(columns);
+void GrowingParticles::add(const Seeds& particles) {
+    particles_->add(particles);
     if (!aside_) sample();
 }
 
 /// Notes where material is, and grows where it comes near an edge that is none of the terrain.
-void GrowingColumns::sample() {
-    NodeBox worked = columns_->worked();
+void GrowingParticles::sample() {
+    NodeBox worked = particles_->worked();
     if (worked.nx == 0) return;
     worked.i0 += held_.i0, worked.j0 += held_.j0;
     shown_ = united(shown_, worked);
@@ -80,7 +80,7 @@ void GrowingColumns::sample() {
 
 /// The part that material needs. It stays as it is while material is so many nodes clear of the edges. Beyond those
 /// that it is not clear of, the part is half as large again.
-NodeBox GrowingColumns::room_for(const NodeBox& worked, Index clear) const {
+NodeBox GrowingParticles::room_for(const NodeBox& worked, Index clear) const {
     const NodeBox needed = common(widened(worked, clear), NodeBox::all(wider_->grid));
     const Index more_x = std::max(kGrowAtLeast, held_.nx / 2), more_y = std::max(kGrowAtLeast, held_.ny / 2);
     NodeBox room = held_;
@@ -93,7 +93,7 @@ NodeBox GrowingColumns::room_for(const NodeBox& worked, Index clear) const {
 
 /// Elevations of another part of the terrain, that held now among them. Where some are missing it is all of the
 /// terrain. Only the whole shows what is outside of it, and what is a hole in it.
-void GrowingColumns::hold(NodeBox box) {
+void GrowingParticles::hold(NodeBox box) {
     Raster bed = read_part(box);
     const NodeBox all = NodeBox::all(wider_->grid);
     if (has_nodata(bed) && !(box == all)) box = all, bed = read_part(all);
@@ -104,13 +104,13 @@ void GrowingColumns::hold(NodeBox box) {
     held_ = box;
 }
 
-void GrowingColumns::take_fields(GroundFields fields) {
+void GrowingParticles::take_fields(GroundFields fields) {
     scene_.friction = std::move(fields.friction);
     if (scene_.erodible) scene_.erodible->depth = std::move(fields.loose);
     if (scene_.forest) scene_.forest->pressure = std::move(fields.trees);
 }
 
-Raster GrowingColumns::read_part(const NodeBox& box) const {
+Raster GrowingParticles::read_part(const NodeBox& box) const {
     const double nodes = double(box.nx * box.ny);
     require_memory(memory_of_part(nodes) + memory_of_fields(scene_, nodes), free_memory(),
                    {"terrain.window", fmt::format("the flow has come so far that {} x {} nodes", box.nx, box.ny),
@@ -119,39 +119,39 @@ Raster GrowingColumns::read_part(const NodeBox& box) const {
 }
 
 /// A run that cannot grow is refused: what it has so far is written.
-void GrowingColumns::grow(const NodeBox& box) {
+void GrowingParticles::grow(const NodeBox& box) {
     const NodeBox before = held_;
     try {
         hold(box);
     } catch (const UserError& error) {
-        throw UserError(fmt::format("step {}, t = {:.6g} s: more of the terrain is needed: {}", columns_->status().step,
-                                    columns_->status().time, error.what()));
+        throw UserError(fmt::format("step {}, t = {:.6g} s: more of the terrain is needed: {}",
+                                    particles_->status().step, particles_->status().time, error.what()));
     }
     const Index east = before.i0 - held_.i0, north = before.j0 - held_.j0;
-    auto larger = columns_among_walls(Start::resumed);
-    larger->take_over(*columns_, east, north);
-    columns_ = std::move(larger);
+    auto larger = particles_among_walls(Start::resumed);
+    larger->take_over(*particles_, east, north);
+    particles_ = std::move(larger);
     ++times_grown_;
 }
 
-void GrowingColumns::show_part() {
+void GrowingParticles::show_part() {
     NodeBox box = common(widened(shown_, kShownAround), held_);
     box.i0 -= held_.i0, box.j0 -= held_.j0;
-    columns_->show(box);
+    particles_->show(box);
 }
 
-Frame GrowingColumns::frame() {
+Frame GrowingParticles::frame() {
     show_part();
-    return columns_->frame();
+    return particles_->frame();
 }
 
-Status GrowingColumns::frame_status() {
+Status GrowingParticles::frame_status() {
     show_part();
-    return columns_->frame_status();
+    return particles_->frame_status();
 }
 
-std::vector<std::string> GrowingColumns::remarks() const {
-    std::vector<std::string> all = columns_->remarks();
+std::vector<std::string> GrowingParticles::remarks() const {
+    std::vector<std::string> all = particles_->remarks();
     for (const std::string& remark : remarks_on(footings_)) all.push_back(remark);
     const GridGeometry& g = wider_->grid;
     const auto extent = scene_.bed.geometry.pixel_extent();
@@ -164,7 +164,7 @@ std::vector<std::string> GrowingColumns::remarks() const {
     return all;
 }
 
-void GrowingColumns::serialize(Archive& archive) {
+void GrowingParticles::serialize(Archive& archive) {
     aside_ = archive.aside() && !archive.loading();
     {
         const Archive::Part part(archive, "part");
@@ -178,10 +178,10 @@ void GrowingColumns::serialize(Archive& archive) {
             if (!(common(held_, box) == held_) || !(common(box, NodeBox::all(wider_->grid)) == box))
                 throw misfit("its part of the terrain is not one of this terrain");
             hold(box);
-            columns_ = columns_among_walls(Start::resumed);
+            particles_ = particles_among_walls(Start::resumed);
         }
     }
-    columns_->serialize(archive);
+    particles_->serialize(archive);
 }
 
 }  // namespace frana

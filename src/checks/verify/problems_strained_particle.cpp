@@ -1,10 +1,10 @@
-// One structured column against closed forms of its law: simple shear, unconfined compression.
+// One structured particle against closed forms of its law: simple shear, unconfined compression.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "checks/verify/library.h"
-#include "checks/verify/strained_column.h"
+#include "checks/verify/strained_particle.h"
 
 namespace frana::verify {
 namespace {
@@ -39,37 +39,38 @@ constexpr PrintedStrength kStiff{26.7e3, 28.0, 88.87e3}, kSoft{18.3e3, 27.0, 59.
 
 Measurement run_unconfined_compression(const Setup&) {
     return timed([](Measurement& m) {
-        const auto worst = [](ColumnYield yield) {
+        const auto worst = [](StructuredYield yield) {
             double error = 0.0;
             for (const PrintedStrength& clay : {kStiff, kSoft}) {
-                const ColumnLaw law(unbroken_clay(clay.friction_deg, yield));
+                const StructuredLaw law(unbroken_clay(clay.friction_deg, yield));
                 error = std::max(
                     error,
                     std::abs(squeezed_strength(law, clay.cohesion) / unconfined_strength(law, clay.cohesion) - 1.0));
             }
             return error;
         };
-        m.add("strength", squeezed_strength(ColumnLaw(unbroken_clay(kStiff.friction_deg)), kStiff.cohesion), "Pa");
-        m.add("cone_error", worst(ColumnYield::compression));
-        m.add("hexagon_error", worst(ColumnYield::hexagon));
-        m.add("plane_strain_error", worst(ColumnYield::plane_strain));
+        m.add("strength", squeezed_strength(StructuredLaw(unbroken_clay(kStiff.friction_deg)), kStiff.cohesion), "Pa");
+        m.add("cone_error", worst(StructuredYield::compression));
+        m.add("hexagon_error", worst(StructuredYield::hexagon));
+        m.add("plane_strain_error", worst(StructuredYield::plane_strain));
     });
 }
 
 std::vector<Residual> unconfined_residuals() {
     std::vector<Residual> list;
     for (const PrintedStrength& clay : {kStiff, kSoft})
-        list.push_back({"strength of a clay less what is printed [Pa]",
-                        unconfined_strength(ColumnLaw(unbroken_clay(clay.friction_deg)), clay.cohesion) - clay.bears,
-                        5.0});  // the last digit
+        list.push_back(
+            {"strength of a clay less what is printed [Pa]",
+             unconfined_strength(StructuredLaw(unbroken_clay(clay.friction_deg)), clay.cohesion) - clay.bears,
+             5.0});  // the last digit
     return list;
 }
 
 }  // namespace
 
-std::vector<Problem> strained_column_problems() {
+std::vector<Problem> strained_particle_problems() {
     Problem shear{"jaumann_shear",
-                  "a structured column in simple shear by 2, on so many steps: G sin(2) and G (1 - cos(2))",
+                  "a structured particle in simple shear by 2, on so many steps: G sin(2) and G (1 - cos(2))",
                   {100, 200, 400},
                   {},
                   run_jaumann_shear};
@@ -80,7 +81,7 @@ std::vector<Problem> strained_column_problems() {
                    {400, "error", 6.25e-6, second},
                    {0, "plane_error", 1e-12, "round-off"}};
     Problem unconfined{"unconfined_compression",
-                       "a structured column squeezed along x bears 2 c cos(phi) / (1 - sin(phi))",
+                       "a structured particle squeezed along x bears 2 c cos(phi) / (1 - sin(phi))",
                        {400},
                        unconfined_residuals,
                        run_unconfined_compression};

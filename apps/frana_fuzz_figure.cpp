@@ -1,4 +1,4 @@
-#include "frana_stress_figure.h"
+#include "frana_fuzz_figure.h"
 
 #include <fmt/core.h>
 
@@ -11,12 +11,12 @@ namespace frana {
 namespace {
 
 /// "quadratic" of "quadratic tpic" and of "paper quadratic pic".
-std::string shape_of(const stress::Method& method) {
+std::string shape_of(const fuzz::Method& method) {
     return method.shape == Shape::linear ? "linear" : method.shape == Shape::quadratic ? "quadratic" : "cubic";
 }
 
 /// The rest of the name.
-std::string transfer_of(const stress::Method& method) {
+std::string transfer_of(const fuzz::Method& method) {
     const std::string name = method.name();
     return (method.preset == "default" ? "" : method.preset + " ") + name.substr(name.rfind(' ') + 1);
 }
@@ -30,7 +30,7 @@ Curve& curve_of(ChartPanel& panel, const std::string& name) {
 
 }  // namespace
 
-void draw_cfl_map(const std::vector<stress::CflRow>& rows, const std::filesystem::path& png) {
+void draw_cfl_map(const std::vector<fuzz::CflRow>& rows, const std::filesystem::path& png) {
     ChartFigure figure;
     figure.title = "Largest stable scheme.cfl";
     figure.x_label = "points a cell [1]";
@@ -39,8 +39,8 @@ void draw_cfl_map(const std::vector<stress::CflRow>& rows, const std::filesystem
     for (const char* shape : {"linear", "quadratic", "cubic"}) {
         ChartPanel panel;
         panel.y_label = std::string(shape) + ", cfl [1]";
-        panel.y_range = {0.0, 1.1 * stress::cfl_ladder().back()};
-        for (const stress::CflRow& row : rows) {
+        panel.y_range = {0.0, 1.1 * fuzz::cfl_ladder().back()};
+        for (const fuzz::CflRow& row : rows) {
             if (shape_of(row.method) != shape) continue;
             Curve& curve = curve_of(panel, transfer_of(row.method));
             curve.x.push_back(row.method.per_side * row.method.per_side);

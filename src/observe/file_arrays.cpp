@@ -1,4 +1,4 @@
-#include "observe/file_columns.h"
+#include "observe/file_arrays.h"
 
 #include <fmt/core.h>
 
@@ -55,7 +55,7 @@ std::vector<std::uint8_t> outside_nodes(const Frame& frame) {
 }
 
 template <class T>
-void copy_column(const Field& field, const std::vector<std::uint8_t>& outside, T* target) {
+void copy_array(const Field& field, const std::vector<std::uint8_t>& outside, T* target) {
     const Index numbers = field.count * field.components;
     Index misfits = 0;
     for (Index k = 0; k < numbers; ++k) {
@@ -78,8 +78,8 @@ void copy_column(const Field& field, const std::vector<std::uint8_t>& outside, T
     }
 }
 
-template void copy_column<float>(const Field&, const std::vector<std::uint8_t>&, float*);
-template void copy_column<double>(const Field&, const std::vector<std::uint8_t>&, double*);
-template void copy_column<std::int64_t>(const Field&, const std::vector<std::uint8_t>&, std::int64_t*);
+template void copy_array<float>(const Field&, const std::vector<std::uint8_t>&, float*);
+template void copy_array<double>(const Field&, const std::vector<std::uint8_t>&, double*);
+template void copy_array<std::int64_t>(const Field&, const std::vector<std::uint8_t>&, std::int64_t*);
 
 }  // namespace frana
