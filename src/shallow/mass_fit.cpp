@@ -209,7 +209,7 @@ MassFit fit_masses(Flow& flow, double level) {
         if (gather_rows(true, level - 1e-13 * std::max(1.0, std::abs(level))) == 0) break;
     }
     fit.rows = static_cast<Index>(rows.size());
-    fit.volume_change = Numbers::Map(flow.columns.mass.data(), flow.columns.count()).sum() / start.sum() - 1.0;
+    fit.volume_change = Numbers::Map(flow.particles.mass.data(), flow.particles.count()).sum() / start.sum() - 1.0;
     return fit;
 }
 
