@@ -8,6 +8,7 @@
 #include "analytic_scene.h"
 #include "base/error.h"
 #include "catch.h"
+#include "coupling/bed_friction.h"
 #include "coupling/staged_run.h"
 #include "fake_gis.h"
 #include "observe/budget.h"
@@ -376,6 +377,31 @@ TEST_CASE("The flow that a bed law sees at the edge of points has the particles 
     }
     CHECK(half.depth == Approx(0.5 * depth));
     CHECK(map.at({10.0, 5.0}).depth == Approx(0.5 * depth));  // the points' own, as before
+}
+
+// On Frank's slope points that had come apart had friction coefficients of hundreds by Voellmy's law, since the mean depth
+// around them was millimetres. Others ran into those that stood, and points shot out with 1455 m/s.
+TEST_CASE("Points that lie apart have the friction of a flow as thick as they are", "[stages]") {
+    constexpr double mu = 0.15, xi = 500.0, speed = 30.0, spacing = 0.5;
+    Scene scene = scene_on(21, 11, 1.0, [](double, double) { return 0.0; });
+    scene.density = 1000.0, scene.bed_law = bed::Voellmy{mu, xi};
+    FlowMap map(scene);  // of all the terrain, since no window is given
+    scene.solid.emplace();
+    scene.solid->spacing = spacing;
+    SolidScene space;
+    space.density = scene.density;
+    space.law = solid::Fluid{1e6, 0.0};
+    space.grid = {Vec3(-1, -1, -1), 0.5, {47, 27, 20}};
+    const auto coefficient = [&](double mass) {
+        SolidScene one = space;
+        one.points.add({10.0, 5.0, 0.25}, Vec3(speed, 0.0, 0.0), mass, 0.0);
+        map.sample(Mpm3d(one), 0.0);
+        return BedFriction(scene, map).coefficient({10.0, 5.0, 0.0});
+    };
+    // To the step that finds a deceleration.
+    CHECK(coefficient(1.0) == Approx(mu + speed * speed / (xi * spacing)).epsilon(1e-3));
+    const double deep = 2.0 * scene.density;  // on a node of 1 m
+    CHECK(coefficient(deep) == Approx(mu + speed * speed / (xi * 2.0)).epsilon(1e-3));
 }
 
 TEST_CASE("A 3D frame has the mass of both models on its particles and on its nodes", "[stages]") {

@@ -22,7 +22,10 @@ double friction_of_flow(const Scene& scene, const Vec2& place, const FlowMap::Me
 }
 
 double BedFriction::coefficient(const Vec3& x) const {
-    return friction_of_flow(scene_, x.head<2>(), map_.mean_at(x.head<2>()));
+    FlowMap::Mean flow = map_.mean_at(x.head<2>());
+    // No flow is thinner than its points. Where they lie apart, as in spray, the map's mean is.
+    if (flow.depth > 0.0) flow.depth = std::max(flow.depth, scene_.solid->spacing);
+    return friction_of_flow(scene_, x.head<2>(), flow);
 }
 
 }  // namespace frana
