@@ -303,6 +303,10 @@ std::vector<std::string> remarks_on(const Footings& footings) {
             "erodible: {:.6g} m3 of loose ground under barriers and a cell around them is taken for firm, or it "
             "would be carried away from under them; no scour at their foot is foretold",
             footings.firm));
+    if (footings.displaced > 0.0)
+        all.push_back(fmt::format(
+            "barriers: {:.6g} m3 of the lake are not there, since barriers and the cell around them are ground",
+            footings.displaced));
     if (footings.cleared > 0.0)
         all.push_back(
             fmt::format("forest: no trees stand on barriers and a cell around them, on {:.4g} ha that had some",
@@ -345,7 +349,7 @@ ParticleWatch::ParticleWatch(const Scene& scene) : grid_(scene.bed.geometry), ce
     tiles_ = BarrierTiles(scene.bed.geometry, boxes_, kClose * cell_);
     for (const Seeds* seeds : scene.all_particles())
         for (std::size_t p = 0; p < seeds->x.size(); ++p)
-            if (is_on_top({seeds->x[p], seeds->y[p]})) placed_ += seeds->volume[p];
+            if (!scene.still_surface && is_on_top({seeds->x[p], seeds->y[p]})) placed_ += seeds->volume[p];
     note_inflows(scene);
 }
 

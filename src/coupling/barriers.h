@@ -29,8 +29,9 @@ std::vector<BarrierNode> barrier_nodes(const Scene& scene);
 
 /// What barriers stand on.
 struct Footings {
-    double firm = 0.0;     ///< ground that was loose [m3]
-    double cleared = 0.0;  ///< where trees stood [m2]
+    double firm = 0.0;       ///< ground that was loose [m3]
+    double cleared = 0.0;    ///< where trees stood [m2]
+    double displaced = 0.0;  ///< of a lake, in whose room they stand [m3]
 };
 
 /// Puts barriers into a scene whose first node is (i0, j0) of the one that their nodes were found in. The bed rises to their

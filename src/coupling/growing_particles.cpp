@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/free_memory.h"
+#include "coupling/lake_at_barriers.h"
 #include "mpm/stored_points.h"
 #include "scene/bed_smoothing.h"
 #include "scene/memory_need.h"
@@ -50,6 +51,7 @@ std::unique_ptr<DepthAveraged> GrowingParticles::particles_among_walls(Start sta
     if (barrier_nodes_.empty()) return std::make_unique<DepthAveraged>(scene_, start);
     Scene walled = scene_;
     footings_ = stand_in(walled, barrier_nodes_, held_.i0, held_.j0);
+    footings_.displaced = make_room_in_lake(walled, scene_.bed);
     return std::make_unique<DepthAveraged>(walled, start);
 }
 

@@ -1,5 +1,7 @@
 #include "coupling/walled_particles.h"
 
+#include "coupling/lake_at_barriers.h"
+
 namespace frana {
 
 WalledParticles::WalledParticles(const Scene& scene, Start start) : density_(scene.density), watch_(scene) {
@@ -12,7 +14,9 @@ WalledParticles::WalledParticles(const Scene& scene, Start start) : density_(sce
 }
 
 void WalledParticles::hold_all(Scene scene, Start start) {
+    const Raster bed = scene.bed;
     footings_ = stand_in(scene, barrier_nodes(scene), 0, 0);
+    footings_.displaced = make_room_in_lake(scene, bed);
     whole_ = std::make_unique<DepthAveraged>(scene, start);
 }
 
