@@ -103,6 +103,12 @@ void remark_on_kind(const CaseFile& file, Scene& scene) {
     }
 }
 
+/// Densities besides that of the mass: of what the flow takes up, and of the water beside it.
+void remark_on_other_densities(const CaseFile& file, Scene& scene) {
+    for (const char* key : {"erodible.density", "water.density"})
+        if (file.given(key)) remark_on(scene.log, Remark::density, file.place(key), {file.number(key)});
+}
+
 /// Why no frame of the scene has a field; empty: one has.
 std::string why_without(const Scene& scene, const std::string& field) {
     const auto is = [&](std::initializer_list<const char*> names) {
@@ -164,6 +170,7 @@ void remark_on_material(const CaseFile& file, Scene& scene) {
         angle(table + "friction_angle_deg", false);
         xi(table + "xi");
     }
+    remark_on_other_densities(file, scene);
     angle("material.structure.friction_angle_deg", false);
     for (Index i = 0; i < file.count("stage"); ++i) angle(fmt::format("stage.{}.friction_angle_deg", i), false);
     remark_on_kind(file, scene);
