@@ -11,6 +11,8 @@
 #include "frana_compare.h"
 #include "frana_figures.h"
 #include "run/folder/comparison.h"
+#include "run/folder/left_terrain.h"
+#include "run/folder/record_file.h"
 #include "run/folder/release_results.h"
 #include "run/folder/run_charts.h"
 #include "run/folder/run_folder.h"
@@ -154,6 +156,7 @@ RunAndSurvey read_run_and_survey(const CompareOptions& options) {
     const std::optional<Raster> later = released_later(options, source, read.warnings);
     read.comparison = compare_rasters(source.rasters, source.bed.values.empty() ? nullptr : &source.bed,
                                       source.footprint_depth, survey, source.start, later ? &*later : nullptr);
+    remark_on_left(noticeably_left_in(json_in(options.run_dir / "run.json")), read.comparison);
     if (read.comparison.extents) source.survey = survey.footprint;
     source.runout_path = read.comparison.path;
     return read;

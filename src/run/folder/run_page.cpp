@@ -10,6 +10,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "observe/table.h"
+#include "run/folder/left_terrain.h"
 #include "run/folder/run_film.h"
 #include "run/web/web_page.h"
 #include "scene/case_file.h"
@@ -21,7 +22,7 @@ namespace frana {
 namespace fs = std::filesystem;
 namespace {
 
-using PlainJson = nlohmann::json;
+using RecordJson = nlohmann::ordered_json;
 
 constexpr const char* kPage = "figures/view.html";
 
@@ -41,7 +42,7 @@ std::string measured(double value, const char* unit) {
     return grouped(value, decimals) + "\u2009" + unit;
 }
 
-std::string end_of(const PlainJson& record) {
+std::string end_of(const RecordJson& record) {
     std::string reason = record.value("exit_reason", "");
     if (reason == "rest") return "the mass came to rest";
     if (reason == "end") return "the simulated time was over";
@@ -51,12 +52,12 @@ std::string end_of(const PlainJson& record) {
 }
 
 /// At the start and later [m3]; runs of an earlier version do not tell the latter.
-double released_in_all(const PlainJson& record) {
+double released_in_all(const RecordJson& record) {
     return record.at("release_volume").get<double>() + record.value("release_volume_later", 0.0);
 }
 
-std::vector<std::pair<std::string, std::string>> facts_of(const PlainJson& record) {
-    const PlainJson &results = record.at("results"), &mass = record.at("budgets").at("mass");
+std::vector<std::pair<std::string, std::string>> facts_of(const RecordJson& record) {
+    const RecordJson &results = record.at("results"), &mass = record.at("budgets").at("mass");
     std::vector<std::pair<std::string, std::string>> facts = {
         {"Released", measured(released_in_all(record), "m\u00b3")},
         {"Farthest front", measured(results.at("max_front"), "m")},
@@ -67,10 +68,9 @@ std::vector<std::pair<std::string, std::string>> facts_of(const PlainJson& recor
         {"Ended because", end_of(record)},
         {"Cells", measured(record.at("grid").at("cell"), "m")},
         {"Mass error", fmt::format("{:.1e}", mass.at("relative_error").get<double>())}};
-    const double left = mass.at("left_domain"),
-                 all = mass.at("initial").get<double>() + mass.at("came_in").get<double>();
-    if (left > 0.0 && all > 0.0)
-        facts.insert(facts.begin() + 1, {"Left the terrain", fmt::format("{:.3g} % of the mass", 100.0 * left / all)});
+    if (const double left = left_share_in(record); left > 0.0)
+        facts.insert(facts.begin() + 1,
+                     {"Left the terrain", fmt::format("{:.3g} % of all that flowed", 100.0 * left)});
     return facts;
 }
 
@@ -114,7 +114,7 @@ std::optional<PageDrape> drape_of(const FigureSource& source, const DrapeRule& r
 }
 
 /// The first run of the curves: history.csv; none where it is gone.
-PageCurves curves_of(const FigureSource& source, const PlainJson& record, std::vector<std::string>& warnings) {
+PageCurves curves_of(const FigureSource& source, const RecordJson& record, std::vector<std::string>& warnings) {
     PageCurves curves;
     try {
         const Table history = read_table(source.run_dir / "history.csv");
@@ -150,7 +150,7 @@ PageTop top_of(const std::vector<PageDrape>& drapes, const char* name, double of
     return {of_frames > 0.0 ? of_frames : 1.0, false};
 }
 
-WebPage page_of(const FigureSource& source, const FlowFrames& frames, const PlainJson& record,
+WebPage page_of(const FigureSource& source, const FlowFrames& frames, const RecordJson& record,
                 std::vector<std::string>& warnings) {
     WebPage page;
     page.title = source.title, page.caption = source.footer;
@@ -214,7 +214,7 @@ void add_page(const FigureSource& source, const FlowFrames& frames, const std::s
     std::shared_ptr<const WebPage> page;
     if (why_not.empty()) try {
             std::vector<std::string> warnings;
-            page = std::make_shared<const WebPage>(page_of(source, frames, PlainJson::parse(record), warnings));
+            page = std::make_shared<const WebPage>(page_of(source, frames, RecordJson::parse(record), warnings));
             for (std::string& warning : warnings) gallery.warn(std::move(warning));
         } catch (const std::exception& error) {
             why_not = error.what();
