@@ -78,7 +78,7 @@ TEST_CASE("A run whose flow stays on the terrain has no such remark, nor has wha
     CHECK(text_of(plane.folder() / "run/compare.md").find("left the terrain") == std::string::npos);
 }
 
-TEST_CASE("A comparison says that the flow left the terrain", "[program][compare]") {
+TEST_CASE("A comparison keeps what reading the survey said, and that the flow left the terrain", "[program][compare]") {
     const ShortPlane plane;
     plane.run();
     write_text(plane.folder() / "seen.geojson", survey());
@@ -88,6 +88,8 @@ TEST_CASE("A comparison says that the flow left the terrain", "[program][compare
                       page = text_of(plane.folder() / "run/compare.md");
     for (const std::string& text : {remarks, page, done.out}) {
         CHECK_THAT(text, Contains("of all that flowed left the terrain, so simulated runout"));
+        CHECK_THAT(text, Contains("its polygons overlap by 3600 m2"));  // 60 m x 60 m
+        CHECK_THAT(text, Contains("repaired"));
     }
 }
 
