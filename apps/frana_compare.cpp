@@ -11,6 +11,8 @@
 #include "frana_compare.h"
 #include "frana_figures.h"
 #include "run/folder/comparison.h"
+#include "run/folder/left_terrain.h"
+#include "run/folder/record_file.h"
 #include "run/folder/release_results.h"
 #include "run/folder/run_charts.h"
 #include "run/folder/run_folder.h"
@@ -149,11 +151,17 @@ RunAndSurvey read_run_and_survey(const CompareOptions& options) {
     FigureSource& source = read.run = read_finished_run(options.run_dir, read.warnings);
     require_rasters(options.run_dir, source.rasters);
     require_erodible(options, source.rasters);
+    std::vector<std::string> said;  // of what the scores are made of: it belongs to them
     const Survey survey =
-        read_survey_files(files_of(options), find_product(source.rasters, "peak_depth")->raster, read.warnings);
-    const std::optional<Raster> later = released_later(options, source, read.warnings);
+        read_survey_files(files_of(options), find_product(source.rasters, "peak_depth")->raster, said);
+    const std::optional<Raster> later = released_later(options, source, said);
+    join_remarks_on_coordinates(said);
     read.comparison = compare_rasters(source.rasters, source.bed.values.empty() ? nullptr : &source.bed,
                                       source.footprint_depth, survey, source.starts, later ? &*later : nullptr);
+    std::vector<std::string>& remarks = read.comparison.remarks;
+    remarks.insert(remarks.begin(), said.begin(), said.end());
+    read.warnings.insert(read.warnings.end(), said.begin(), said.end());
+    remark_on_left(noticeably_left_in(json_in(options.run_dir / "run.json")), read.comparison);
     if (read.comparison.extents) source.survey = survey.footprint;
     source.runout_paths = paths_of(read.comparison);
     return read;

@@ -9,6 +9,7 @@
 namespace frana {
 
 /// A finished run held against a survey; writes nothing. The run has the survey's footprint and the path of the runout.
+/// What reading the survey's files said is among the warnings, and among the comparison's remarks.
 struct RunAndSurvey {
     FigureSource run;
     Comparison comparison;

@@ -236,6 +236,11 @@ TEST_CASE("each kind of survey finds the friction that it was made with, and all
           Approx(compared["boundary_distance_mean"].get<double>()).epsilon(1e-6));
     CHECK(slide.column("found/runs.csv", "slide: runout_rms")[3] ==
           Approx(std::abs(compared["runout_difference"].get<double>())).margin(1e-6));
+    // So is what left the terrain.
+    const std::vector<double> left = slide.column("found/runs.csv", "slide: left_share");
+    const Json mass = Json::parse(text_of(slide.path("fourth/run.json")))["budgets"]["mass"];
+    CHECK(left[3] == Approx(mass["left_share"].get<double>()).epsilon(1e-6).margin(1e-12));
+    CHECK(json["left_terrain"] == std::count_if(left.begin(), left.end(), [](double share) { return share > 1e-3; }));
     // So is the volume of the best run that lies where the survey has no data.
     REQUIRE(slide.run("event.toml", "best", json["best"]["material.bed.mu"].get<double>()).code == 0);
     const double unsurveyed =

@@ -21,6 +21,7 @@ Calibration calibration_of(const std::vector<double>& distances) {
         EventScores& scores = c.fits[0].scores.emplace_back();
         scores.boundary = distance;
         scores.misfits[static_cast<std::size_t>(Evidence::outline)] = Misfit{distance, 1.0};
+        c.fits[0].left_share.push_back(0.0);
         c.fits[0].log_likelihood.push_back(log_likelihood(scores, event.objective, event.errors));
     }
     const auto points = c.posterior.next(c.plan.samples);
@@ -53,4 +54,14 @@ TEST_CASE("A calibration gives no spread of fewer than five points of equal weig
     CHECK_THAT(few, Contains(no_spread) && Contains(" - | - | - | - |"));
     distances[4] = distances[5] = 10.0;
     CHECK_THAT(calibration_section(calibration_of(distances)), !Contains(no_spread) && !Contains(" - | - | - | - |"));
+}
+
+TEST_CASE("A calibration says which of its runs left the terrain, and whether its best one did", "[ensemble]") {
+    Calibration c = calibration_of(std::vector<double>(16, 10.0));
+    CHECK_THAT(calibration_section(c), !Contains("left the terrain"));
+    c.left_terrain = 3;
+    CHECK_THAT(calibration_section(c), Contains("Of 3 a noticeable share left the terrain") &&
+                                           Contains("lower bounds") && !Contains("at the best point"));
+    c.fits[0].left_share.assign(16, 0.25);
+    CHECK_THAT(calibration_section(c), Contains("slope: at the best point 25 % of all that flowed left the terrain"));
 }

@@ -35,7 +35,7 @@ Raster bed_of(double cell) {
 }
 
 /// The folder of a run whose flow, 20 m wide, came from kBegin to `front`. What lies there at the end begins at 60 m.
-void leave_run(const fs::path& folder, double cell, double front, const char* end = "rest") {
+void leave_run(const fs::path& folder, double cell, double front, const char* end = "rest", double left = 0.0) {
     const auto slab = [&](double from, double to, double inside, double outside) {
         return raster_of(
             cell, [=](double x, double y) { return x > from && x < to && y > 20.0 && y < 40.0 ? inside : outside; });
@@ -51,10 +51,12 @@ void leave_run(const fs::path& folder, double cell, double front, const char* en
                    {"final_depth", "m", "", slab(60.0, front, 1.0, 0.0)},
                    {"arrival_time", "s", "", arrival}},
                   "a slab");
-    write_text(folder / "run.json",
-               fmt::format(R"({{"title": "slab", "exit_reason": "{}", "flow_width_cells": {}, "results": )"
-                           R"({{"footprint_depth": 0.1}}, "wall_seconds": {{"total": 3.5}}}})",
-                           end, 20.0 / cell));
+    write_text(
+        folder / "run.json",
+        fmt::format(
+            R"({{"title": "slab", "exit_reason": "{}", "flow_width_cells": {}, "results": )"
+            R"({{"footprint_depth": 0.1}}, "wall_seconds": {{"total": 3.5}}, "budgets": {{"mass": {{"left_share": {}}}}}}})",
+            end, 20.0 / cell, left));
 }
 
 /// A study of the folders cell_N.
@@ -106,6 +108,25 @@ TEST_CASE("A study whose last two runs lie two cells apart has not converged", "
     measure_runs(study, bed_of(2.5));
     CHECK_FALSE(study.verdict.converged);
     CHECK_FALSE(study.verdict.enough);
+}
+
+TEST_CASE("Runouts that agree at the edge of the terrain are no evidence of convergence", "[converge]") {
+    const FreshFolder folder;
+    const auto verdict_with = [&](double left) {
+        leave_run(folder.path() / "cell_5", 5.0, 160.0, "rest", left);
+        leave_run(folder.path() / "cell_2.5", 2.5, 160.0, "rest", left);
+        ConvergenceStudy study = study_of(folder.path(), {5.0, 2.5});
+        measure_runs(study, bed_of(2.5));
+        return study;
+    };
+    CHECK(verdict_with(0.0).verdict.converged);
+    CHECK(verdict_with(1e-3).verdict.converged);  // as in an ensemble: more than a thousandth
+    const ConvergenceStudy study = verdict_with(0.4);
+    CHECK_FALSE(study.verdict.converged);
+    CHECK_FALSE(study.verdict.enough);
+    CHECK_THAT(study.verdict.sentence, Contains("It is not known whether") && Contains("On this terrain alone: "));
+    REQUIRE_FALSE(study.remarks.empty());
+    CHECK_THAT(study.remarks[0], Contains("40 % on 5 m, 40 % on 2.5 m left the terrain"));
 }
 
 TEST_CASE("A study takes the straight reach where its path ends before the fronts", "[converge]") {

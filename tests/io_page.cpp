@@ -1,5 +1,6 @@
 // The page of a run: what it holds is unpacked again and compared with what the run left.
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
@@ -155,7 +156,8 @@ TEST_CASE("Frames that are too many thin out evenly, and a resumed run has the s
     const Flow flow;
     FlowFrames frames(0.1, 5000);
     MemoryArchive kept;
-    for (Index number = 0; number < 38; ++number) frames.add(number, 0.5 * static_cast<double>(number), flow.fields());
+    for (Index number = 0; number < 38; ++number)
+        frames.add(number, 0.5 * static_cast<double>(number), flow.fields(), static_cast<double>(number));
     CHECK(frames.every() > 1);
     REQUIRE(frames.frames().size() > 3);
     CHECK(frames.frames().back().number == 37);
@@ -169,7 +171,8 @@ TEST_CASE("Frames that are too many thin out evenly, and a resumed run has the s
     REQUIRE(again.frames().size() == frames.frames().size());
     for (std::size_t k = 0; k < frames.frames().size(); ++k) {
         const PackedFrame &a = frames.frames()[k], &b = again.frames()[k];
-        CHECK((a.number == b.number && a.time == b.time && a.grid == b.grid && a.bytes == b.bytes));
+        CHECK(
+            (a.number == b.number && a.time == b.time && a.grid == b.grid && a.bytes == b.bytes && a.lying == b.lying));
     }
 }
 
@@ -244,6 +247,39 @@ TEST_CASE("The page of a run holds its frames, as its files for ParaView have th
             CHECK(again.at("drapes")[n].at(key) == data.at("drapes")[n].at(key));
     REQUIRE(again.at("frames").size() == times.size());
     for (std::size_t n = 0; n < times.size(); ++n) CHECK(again.at("frames")[n].at("t") == data.at("frames")[n].at("t"));
+}
+
+TEST_CASE("The page of a flood tells what came in, where its front is measured from, and what has become bed",
+          "[page]") {
+    if (cannot_show()) return;
+    const Slope slope;
+    write_text(
+        slope.path() / "flood.toml",
+        "[case]\ntitle = \"Flood\"\n[terrain]\ndem = \"dem.asc\"\n[[inflow]]\nname = \"torrent\"\nline = [[1050, "
+        "2035], [1050, 2065]]\nvolume = 400\npeak = 80\nvelocity = 4\n[material]\ndensity = "
+        "1600\n[material.bed]\nlaw = \"coulomb\"\nmu = 0.7\n[deposition]\nlaw = \"rest\"\ntime = 1\n[time]\nend = "
+        "20\n[output]\nformats = [\"vtk\", \"web\"]\n");
+    const Outcome done = call_frana(slope.path(), "run flood.toml --out run --quiet");
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    const Json record = Json::parse(text_of(slope.run_dir() / "run.json")), &budgets = record.at("budgets");
+    const double lies = budgets.at("bed").at("lies_behind").get<double>() / 1600.0,
+                 flows = budgets.at("mass").at("final").get<double>() / 1600.0;
+    REQUIRE(lies > 10.0);
+    const auto check = [&](const Json& data) {
+        std::map<std::string, std::string> facts;
+        for (const Json& fact : data.at("facts")) facts[fact[0]] = fact[1];
+        CHECK(facts.count("Released") == 0);  // nothing was
+        CHECK(facts["Came in"] == "400\u2009m\u00b3");
+        CHECK(std::stod(facts["Became bed"]) == Approx(lies).epsilon(1e-2));  // three digits
+        const Json& curves = data.at("curves");
+        CHECK(curves.at("runout_name") == "Farthest front from the middle of inflow torrent");
+        CHECK(curves.at("volume_name") == "Volume, with what has become bed");
+        CHECK(curves.at("volume").back().get<double>() == Approx(flows + lies).epsilon(1e-6));  // float32 of frames
+    };
+    check(data_of(text_of(slope.run_dir() / "figures" / "view.html")));
+    REQUIRE(call_frana(slope.path(), "figures run --web").code == 0);
+    check(data_of(text_of(slope.run_dir() / "figures" / "view.html")));
 }
 
 TEST_CASE("A run without frames for ParaView has them on its page, and without the format there is no page", "[page]") {

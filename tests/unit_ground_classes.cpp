@@ -13,6 +13,7 @@
 
 using namespace frana;
 using namespace frana::test;
+using Catch::Contains;
 
 namespace {
 
@@ -150,6 +151,30 @@ TEST_CASE("Without a class the released volume tells the size, and zones win ove
     CHECK(static_cast<std::size_t>(std::count(zoned.begin(), zoned.end(), 0.123)) == zoned.size());
 }
 
+TEST_CASE("A size of snow that is not that of the volume is remarked upon", "[scene][remarks]") {
+    // 3000 m3 are released, 1500 m2 with 2 m.
+    const auto remark_with = [](const std::string& size, const std::string& more) {
+        const std::string bed = "table = \"voellmy-salm\"\nvolume_class = \"" + size + "\"\n";
+        for (const std::string& line : scene_of(with_bed(bed) + more, slope_gis()).log)
+            if (line.find("volume_class") != std::string::npos) return line;
+        return std::string();
+    };
+    const auto inflow = [](int volume) {
+        return fmt::format(
+            "[[inflow]]\nname = \"t\"\nline = [[1150, 2050], [1150, 2080]]\nvelocity = 8\npeak = 200\n"
+            "volume = {}\n",
+            volume);
+    };
+    CHECK(remark_with("tiny", "").empty());
+    CHECK_THAT(
+        remark_with("small", ""),
+        Contains(
+            "found \"small\" (5000 to 25000 m3), not \"tiny\" (below 5000 m3); expected the class of the 3000 m3"));
+    CHECK(remark_with("small", inflow(4000)).empty());
+    CHECK_THAT(remark_with("small", inflow(57000)),
+               Contains("not \"large\" (60000 m3 or more)") && Contains("60000 m3 that"));
+}
+
 TEST_CASE("The size is that of the volume which is released, to the digit", "[scene]") {
     // Of the outline's 1500 m2 two thirds are 5 m deep, between middles of pixels: 5000 m3 and a litre, less, or more.
     FakeGis gis = slope_gis();
@@ -193,7 +218,6 @@ TEST_CASE("Rasters of the table's numbers are the table, bit for bit", "[scene]"
 
 TEST_CASE("What does not go with the table is said in a sentence", "[scene]") {
     const auto only = [](const std::string& keys) { return problem_of(with_bed(keys)); };
-    using Catch::Contains;
     const std::string table = "table = \"voellmy-salm\"\n";
     CHECK_THAT(only(table + "return_period = 50\n"), Contains("found 50") && Contains("10, 30, 100 or 300 years"));
     CHECK_THAT(only(table + "altitude_limits = [1500, 1000]\n"), Contains("found 1000 after 1500"));

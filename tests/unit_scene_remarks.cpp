@@ -56,6 +56,22 @@ TEST_CASE("A density that is missing, or of no mass that slides, is remarked upo
     for (const char* fit : {"density = 100", "density = 4000"}) CHECK(remarks(of(fit), slope(0.5), "density").empty());
 }
 
+TEST_CASE("A density of loose ground or of water in another unit is remarked upon", "[scene][remarks]") {
+    const auto loose = [](const std::string& density) {
+        return case_of("density = 1500\nbed.law = \"none\"", "2.0",
+                       "[erodible]\nlaw = \"shear\"\ndepth = 1.0\ndensity = " + density + "\n");
+    };
+    CHECK(remark(loose("1.9"), slope(0.5), "erodible.density").find("found 1.9 kg/m3; expected 100 to 4000") !=
+          std::string::npos);
+    CHECK(remarks(loose("1900"), slope(0.5), "erodible.density").empty());
+    const auto wet = [](const std::string& density) {
+        return "[terrain]\ndem = \"dem.tif\"\n[time]\nend = 20\n[water]\nmodel = \"free\"\nlevel = 120\ndensity = " +
+               density + "\n";
+    };
+    CHECK(remark(wet("1"), slope(0.5), "water.density").find("found 1 kg/m3") != std::string::npos);
+    CHECK(remarks(wet("1030"), slope(0.5), "water.density").empty());
+}
+
 TEST_CASE("Friction that no ground has is remarked upon, as an angle", "[scene][remarks]") {
     const auto of = [](const std::string& friction) { return case_of(coulomb + "bed." + friction); };
     CHECK(remark(of("friction_angle_deg = 1.5"), slope(0.5), "friction angle of")

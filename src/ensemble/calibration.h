@@ -13,6 +13,7 @@ namespace frana {
 struct EventFit {
     std::vector<EventScores> scores;
     std::vector<double> log_likelihood;  ///< without the event's weight
+    std::vector<double> left_share;      ///< of all that flowed, that left the terrain [1]
 };
 
 /// The point of the least misfit, where a search from the best of the rounds ended.
@@ -36,6 +37,7 @@ struct Calibration {
     std::optional<Optimum> optimum = {};    ///< where one was searched
     std::vector<std::string> files = {};    ///< written
     std::vector<std::string> remarks = {};  ///< on keys that vary and do not hold everywhere, by event
+    Index left_terrain = 0;                 ///< runs of which a noticeable share left it
 };
 
 /// Values of a key at all points.

@@ -147,7 +147,7 @@ void measure_extent(const EnsembleBase& base, const Scene& scene, const Raster& 
 }
 
 void measure(const Scene& scene, const EnsembleBase& base, const RunSummary& run, const LastPeaks& peaks,
-             SampleResult& result) {
+             double infiltrated, SampleResult& result) {
     if (peaks.values.empty()) return;
     Raster depth;
     depth.geometry = peaks.grid, depth.values = peaks.values.front();
@@ -164,12 +164,12 @@ void measure(const Scene& scene, const EnsembleBase& base, const RunSummary& run
     result.max_depth = run.extremes.max_depth, result.max_speed = run.extremes.max_speed;
     const Status& last = run.last;
     const double taken = taken_of_bed(scene, peaks.grid, peaks.eroded);
-    const double flowed = run.first.mass + mass_came_in(run.first, last) + taken;
+    const double flowed = mass_flowed(run.first, last, taken);
     if (scene.erodible) result.eroded = taken / scene.erodible->density;
     const double taken_again = last.bed.eroded - taken;  // of what was left behind
     if (last.bed.deposited > 0.0) result.deposited = std::max(0.0, last.bed.deposited - taken_again) / scene.density;
     result.volume = flowed / scene.density;
-    result.left_share = flowed > 0.0 ? last.mass_left / flowed : 0.0;
+    result.left_share = left_share(last.mass_left, infiltrated, flowed);
     result.mass_error = budget(run.first, last).mass_error;
     measure_extent(base, scene, depth, result);
 }
@@ -196,7 +196,8 @@ void run_scene(const EnsemblePlan& plan, const EnsembleBase& base, const Scene& 
     result.reason = run.reason, result.message = run.failure_text, result.still_moves = run.still_moves();
     result.time = run.last.time, result.steps = run.steps;
     result.gauges = gauges.peaks();
-    measure(scene, base, run, peaks, result);
+    const std::optional<WaterBudget> water = simulation->extras().water;
+    measure(scene, base, run, peaks, water ? water->infiltrated_mass : 0.0, result);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "compare/outline.h"
 #include "ensemble/gauge_peaks.h"
 #include "ensemble/plan.h"
+#include "observe/left_terrain.h"
 #include "observe/observer.h"
 #include "run/interrupt.h"
 #include "run/run_loop.h"
@@ -76,6 +77,8 @@ struct SampleResult {
     SparseRasters peaks;  ///< the plan's fields where the ground was covered, by flow or by what lies there
 
     bool ended() const { return has_answer(reason); }
+    /// Whether its figures are those of a part of the flow.
+    bool left_terrain() const { return ended() && left_share > kNoticeablyLeft; }
 };
 
 /// Runs a sample on this thread; further observers `also` may be given. Nothing when the interrupt was requested

@@ -30,6 +30,9 @@ const std::vector<RemarkRow>& remark_table() {
         {Remark::kind_range, "value outside of the kind", none, none,
          "found {value:.4g}; expected {what}, as in cases/PARAMETERS.md; check the value and its unit, or change "
          "case.kind"},
+        {Remark::size_class, "size of a snow avalanche", none, none,
+         "found {what}; expected the class of the {value:.6g} m3 that are released and come in; correct it, unless the "
+         "friction of another size is meant"},
         {Remark::release_slope, "slope of the release", -none, 60.0,
          "found a bed of up to {value:.3g} degrees under it; expected {high:g} at most, since hardly any mass holds on "
          "steeper ground; check the outline and the elevation model there"},

@@ -1,5 +1,6 @@
 #pragma once
 // Friction of snow avalanches by size, ground, altitude and return period: the Voellmy-Salm classes.
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -10,6 +11,11 @@ inline constexpr std::array<const char*, 4> size_names{"tiny", "small", "medium"
 inline constexpr std::array<const char*, 4> ground_names{"flat or convex", "open slope", "channelled", "gully"};
 /// The first three sizes end below these volumes [m3].
 inline constexpr std::array<double, 3> size_limits{5000.0, 25000.0, 60000.0};
+/// The size of that volume [m3], as a place in size_names.
+inline std::size_t size_of(double volume) {
+    return static_cast<std::size_t>(std::upper_bound(size_limits.begin(), size_limits.end(), volume) -
+                                    size_limits.begin());
+}
 /// The second and third altitude class begin here [m]; in Switzerland, elsewhere shifted by the local tree line.
 inline constexpr std::array<double, 2> altitude_limits{1000.0, 1500.0};
 /// [years]

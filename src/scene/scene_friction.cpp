@@ -53,11 +53,10 @@ public:
 private:
     std::size_t size_class() const {
         const auto& names = salm::size_names;
-        const auto& limits = salm::size_limits;
         if (case_.given("material.bed.volume_class"))
             return static_cast<std::size_t>(
                 std::find(names.begin(), names.end(), case_.word("material.bed.volume_class")) - names.begin());
-        return static_cast<std::size_t>(std::upper_bound(limits.begin(), limits.end(), released_) - limits.begin());
+        return salm::size_of(released_);
     }
 
     GroundBorders borders() const {

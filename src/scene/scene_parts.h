@@ -38,6 +38,9 @@ bool comes_onto(const Polyline& line, const std::array<double, 4>& extent);
 /// particles. The remarks go to the scene's log.
 void remark_on_terrain(const CaseFile& file, Scene& scene);
 void remark_on_material(const CaseFile& file, Scene& scene);
+/// A remark where the class of size that a case gives for its snow is not that of the volume. `released`: by all releases
+/// [m3]; the scene has its inflows.
+void remark_on_size(const CaseFile& file, double released, Scene& scene);
 /// A remark on each field of the output that no frame of this case has.
 void remark_on_fields(const CaseFile& file, Scene& scene);
 void remark_on_releases(const CaseFile& file, const std::vector<ReleaseSummary>& releases, Scene& scene);

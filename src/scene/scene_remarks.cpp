@@ -6,8 +6,10 @@
 
 #include "base/constants.h"
 #include "base/number_text.h"
+#include "scene/inflow_facts.h"
 #include "scene/parameter_ranges.h"
 #include "scene/remarks.h"
+#include "scene/salm_table.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
@@ -103,6 +105,22 @@ void remark_on_kind(const CaseFile& file, Scene& scene) {
     }
 }
 
+/// Densities besides that of the mass: of what the flow takes up, and of the water beside it.
+void remark_on_other_densities(const CaseFile& file, Scene& scene) {
+    for (const char* key : {"erodible.density", "water.density"})
+        if (file.given(key)) remark_on(scene.log, Remark::density, file.place(key), {file.number(key)});
+}
+
+/// "small" (5000 to 25000 m3).
+std::string size_text(std::size_t size) {
+    const auto& limits = salm::size_limits;
+    const std::string volumes = size == 0 ? fmt::format("below {:g} m3", limits.front())
+                                : size == limits.size()
+                                    ? fmt::format("{:g} m3 or more", limits.back())
+                                    : fmt::format("{:g} to {:g} m3", limits[size - 1], limits[size]);
+    return fmt::format("\"{}\" ({})", salm::size_names[size], volumes);
+}
+
 /// Why no frame of the scene has a field; empty: one has.
 std::string why_without(const Scene& scene, const std::string& field) {
     const auto is = [&](std::initializer_list<const char*> names) {
@@ -164,9 +182,23 @@ void remark_on_material(const CaseFile& file, Scene& scene) {
         angle(table + "friction_angle_deg", false);
         xi(table + "xi");
     }
+    remark_on_other_densities(file, scene);
     angle("material.structure.friction_angle_deg", false);
     for (Index i = 0; i < file.count("stage"); ++i) angle(fmt::format("stage.{}.friction_angle_deg", i), false);
     remark_on_kind(file, scene);
+}
+
+void remark_on_size(const CaseFile& file, double released, Scene& scene) {
+    const std::string key = "material.bed.volume_class";
+    if (!file.given(key)) return;
+    double volume = released;
+    for (const Inflow& inflow : scene.inflows) volume += facts_of(inflow, scene.gravity).volume;
+    const auto& names = salm::size_names;
+    const auto given = static_cast<std::size_t>(std::find(names.begin(), names.end(), file.word(key)) - names.begin());
+    const std::size_t size = salm::size_of(volume);
+    if (volume > 0.0 && given != size)
+        remark_on(scene.log, Remark::size_class, file.place(key),
+                  {volume, 0.0, fmt::format("{}, not {}", size_text(given), size_text(size))});
 }
 
 void remark_on_fields(const CaseFile& file, Scene& scene) {

@@ -59,6 +59,8 @@ void DepthAveraged::serialize_sums(Archive& archive) {
     archive.number("fit_largest_change", fit.largest_change);
     archive.number("fit_clipped", fit.clipped);
     archive.number("fit_level_error", fit.level_error);
+    archive.number("fit_left_free", fit.left_free);
+    archive.number("fit_volume_change", fit.volume_change);
     if (!archive.loading()) return;
     splitter_.set_next_id(next_id);
     if (flow_.scheme.merge && !flow_.scheme.paper_pressure) merger_.emplace(most);

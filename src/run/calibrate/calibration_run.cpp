@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "ensemble/sample_run.h"
+#include "observe/left_terrain.h"
 #include "run/calibrate/predict_folder.h"
 #include "run/calibrate/results.h"
 #include "run/calibrate/search.h"
@@ -28,6 +29,8 @@ std::vector<double> take(const std::vector<std::vector<EventRun>>& runs, Calibra
             if (!run.ended() && found.failed == 0) found.first_failure = run.message.empty() ? run.reason : run.message;
             found.failed += !run.ended(), found.not_at_rest += run.still_moves;
             found.seconds += run.seconds;
+            found.left_terrain += run.ended() && run.left_share > kNoticeablyLeft;
+            found.fits[e].left_share.push_back(run.left_share);
             found.fits[e].scores.push_back(run.scores);
             found.fits[e].log_likelihood.push_back(log_likelihood(run.scores, event.objective, event.errors));
             all[k] += event.weight * found.fits[e].log_likelihood.back();

@@ -17,7 +17,7 @@ namespace {
 
 /// Runs are written so often at most; a kill loses what came since.
 constexpr std::chrono::milliseconds kPatience{250};
-constexpr std::size_t kFieldsOfRun = 5;  ///< before its misfits
+constexpr std::size_t kFieldsOfRun = 6;  ///< before its misfits
 constexpr std::size_t kFieldsOfMisfit = 3;
 
 fs::path file_of(const fs::path& dir) { return dir / "kept" / "runs.csv"; }
@@ -40,7 +40,7 @@ RowsOf rows_of(const CalibrationPlan& plan) {
     }
     for (const SurveyedEvent& event : plan.events)
         rows.mark += fmt::format(",event {} {:016x}", plain_field(event.name), sum_of(decides(event)));
-    rows.columns += ",reason,seconds,still_moves,iou,boundary_m";
+    rows.columns += ",reason,seconds,still_moves,left_share,iou,boundary_m";
     for (const Evidence evidence : all_evidence()) {
         const char* word = kind_of(evidence).word;
         rows.columns += fmt::format(",{0}_rms,{0}_number,{0}_unsurveyed_m3", word);
@@ -54,7 +54,7 @@ std::string question(std::size_t event, const std::vector<std::string>& values) 
 }
 
 std::string row_of(const EventRun& run) {
-    std::string row = fmt::format("{},{:.3f},{:d},{},{}", run.reason, run.seconds, run.still_moves,
+    std::string row = fmt::format("{},{:.3f},{:d},{},{},{}", run.reason, run.seconds, run.still_moves, run.left_share,
                                   text_of_known(run.scores.iou), text_of_known(run.scores.boundary));
     for (const auto& misfit : run.scores.misfits)
         row += misfit ? fmt::format(",{},{},{}", misfit->rms, misfit->number, misfit->unsurveyed) : ",,,";
@@ -69,7 +69,8 @@ EventRun run_of(const std::vector<std::string>& fields, std::size_t at) {
     EventRun run;
     run.reason = fields[at], run.seconds = kept_number(fields[at + 1]);
     run.still_moves = kept_number(fields[at + 2]) != 0.0;
-    run.scores.iou = known(at + 3), run.scores.boundary = known(at + 4);
+    run.left_share = kept_number(fields[at + 3]);
+    run.scores.iou = known(at + 4), run.scores.boundary = known(at + 5);
     for (std::size_t k = 0; k < kEvidence; ++k)
         if (const std::size_t from = at + kFieldsOfRun + kFieldsOfMisfit * k; const auto rms = known(from))
             run.scores.misfits[k] = Misfit{*rms, known(from + 1).value_or(0.0), known(from + 2).value_or(0.0)};

@@ -18,6 +18,7 @@ struct EventRun {
     double seconds = 0.0;         ///< wall time [s]
     EventScores scores;           ///< nothing known where the run has no answer
     bool still_moves = false;     ///< as of SampleResult
+    double left_share = 0.0;      ///< as of SampleResult [1]
 
     bool ended() const { return has_answer(reason); }
 };

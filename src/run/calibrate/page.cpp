@@ -9,6 +9,7 @@
 
 #include "ensemble/predictions.h"
 #include "ensemble/statistics.h"
+#include "observe/left_terrain.h"
 #include "run/calibrate/results.h"
 
 namespace frana {
@@ -122,6 +123,19 @@ std::string missed_section(const Calibration& c, std::size_t best) {
     return text;
 }
 
+/// Events whose flow left the terrain at the best point: a survey beyond its edge cannot be met.
+std::string left_section(const Calibration& c, std::size_t best) {
+    std::string text;
+    for (std::size_t e = 0; e < c.fits.size(); ++e)
+        if (const double share = c.fits[e].left_share[best]; share > kNoticeablyLeft)
+            text += fmt::format(
+                "{}: at the best point {:.3g} % of all that flowed left the terrain. Smaller misfits may lie beyond "
+                "its "
+                "edge.\n\n",
+                c.plan.events[e].name, 100.0 * share);
+    return text;
+}
+
 /// How far the best point's runs are off in all that counts, with what was expected of them.
 std::string misfits_section(const Calibration& c, std::size_t best) {
     std::string text = "| Event | what counts | best point | sigma | independent errors |\n|---|---|---:|---:|---:|\n";
@@ -135,7 +149,7 @@ std::string misfits_section(const Calibration& c, std::size_t best) {
                                 misfit->rms, event.errors.of(evidence), misfit->number);
         }
     }
-    return text + "\n" + missed_section(c, best) + unsurveyed_section(c, best);
+    return text + "\n" + left_section(c, best) + missed_section(c, best) + unsurveyed_section(c, best);
 }
 
 }  // namespace
@@ -164,6 +178,12 @@ std::string calibration_section(const Calibration& c) {
     if (c.not_at_rest > 0)
         page += fmt::format(" {} still moved at time.end, and were held against the surveys as they were then.",
                             c.not_at_rest);
+    if (c.left_terrain > 0)
+        page += fmt::format(
+            " Of {} a noticeable share left the terrain: their runout, outline and deposit are lower bounds, and "
+            "misfits "
+            "that grow no more there cannot tell one from another. Give a wider elevation model or terrain.window.",
+            c.left_terrain);
     if (effective < kNoSpread) page += " Fewer than 5 have no spread that means anything, so it is left out.";
     if (effective < kFewSamples) page += " Fewer than 50 are few: give more samples or rounds, or a larger sigma.";
     for (const std::string& remark : c.remarks) page += fmt::format("\n\n{}.", remark);

@@ -51,6 +51,7 @@ Json events_json(const Calibration& c) {
         Json event = {{"name", c.plan.events[e].name},
                       {"iou", known(scores.iou)},
                       {"boundary", known(scores.boundary)},
+                      {"left_share", c.fits[e].left_share[best]},
                       {"boundary_by_prior", known(rows[e].prior.mean)},
                       {"boundary_median_of_prior", known(rows[e].prior.median)},
                       {"boundary_by_own", known(rows[e].own.mean)},
@@ -99,6 +100,7 @@ Json record_of(const Calibration& c, const std::vector<std::string>& files) {
     json["evaluations"] = c.posterior.points().size() * c.fits.size();
     json["failed"] = c.failed;
     json["not_at_rest"] = c.not_at_rest;
+    json["left_terrain"] = c.left_terrain;
     json["posterior"] = posterior;
     json["pairs"] = pairs;
     if (c.optimum) json["optimum"] = optimum_json(c);
@@ -114,7 +116,8 @@ void write_tables(const fs::path& dir, const Calibration& c) {
     runs.put("sample,weight");
     for (const Vary& vary : c.plan.vary) runs.put(",{}", vary.key);
     for (const SurveyedEvent& event : c.plan.events) {
-        runs.put(",{},{}", csv_field(event.name + ": iou"), csv_field(event.name + ": boundary_m"));
+        for (const char* column : {": left_share", ": iou", ": boundary_m"})
+            runs.put(",{}", csv_field(event.name + column));
         for (const Evidence evidence : event.objective)
             runs.put(",{}", csv_field(fmt::format("{}: {}_rms", event.name, kind_of(evidence).word)));
     }
@@ -126,7 +129,7 @@ void write_tables(const fs::path& dir, const Calibration& c) {
             runs.put(",{}", c.plan.vary[k].distribution.number(c.posterior.points()[i][k]));
         for (std::size_t e = 0; e < c.fits.size(); ++e) {
             const EventScores& scores = c.fits[e].scores[i];
-            runs.put(",{},{}", text_of_known(scores.iou), text_of_known(scores.boundary));
+            runs.put(",{},{},{}", c.fits[e].left_share[i], text_of_known(scores.iou), text_of_known(scores.boundary));
             for (const Evidence evidence : c.plan.events[e].objective) {
                 const auto& misfit = scores.misfits[static_cast<std::size_t>(evidence)];
                 runs.put(",{}", misfit ? fmt::format("{}", misfit->rms) : "");

@@ -111,6 +111,7 @@ std::string json_of(const ConvergenceStudy& study) {
         orders[quantity.key] = order ? Json(*order) : Json(nullptr);
     }
     json["exit_reason"] = study.ends;
+    json["left_share"] = study.left;
     json["observed_order"] = orders;
     json["footprint_depth"] = study.footprint_depth;
     json["rule"] = {{"runout_cells", study.rule.runout_cells},

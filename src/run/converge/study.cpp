@@ -10,6 +10,8 @@
 #include "compare/flow_width.h"
 #include "compare/outline.h"
 #include "compare/runout.h"
+#include "run/converge/left_runs.h"
+#include "run/folder/left_terrain.h"
 #include "run/folder/products.h"
 #include "run/folder/record_file.h"
 
@@ -192,6 +194,7 @@ void measure_runs(ConvergenceStudy& study, const Raster& bed) {
         const RunFiles files = read_run(run.folder);
         study.figures.push_back(figures_of(files, finest, path, study.footprint_depth));
         study.ends.push_back(files.record["exit_reason"].get<std::string>());
+        study.left.push_back(noticeably_left_in(files.record));
         particles = particles || files.record.value("particle_steps", 1.0) > 0.0;
     }
     for (Variation& varied : study.variations)
@@ -207,6 +210,7 @@ void measure_runs(ConvergenceStudy& study, const Raster& bed) {
     remark_on_ends(study);
     remark_on_path(study);
     study.verdict = judge(study.figures, study.rule);
+    doubt_left(study);
 }
 
 }  // namespace frana

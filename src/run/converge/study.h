@@ -30,6 +30,7 @@ struct ConvergenceStudy {
     std::vector<StudiedRun> runs;  ///< coarse to fine
     std::vector<CellFigures> figures;
     std::vector<std::string> ends;  ///< why each run ended
+    std::vector<double> left;       ///< of each run, share that left the terrain where it is worth a remark, or 0 [1]
     std::vector<Variation> variations;
     bool along_path = true;        ///< runouts are; else they are straight reaches, and a remark says why
     double footprint_depth = 0.1;  ///< [m]

@@ -246,8 +246,7 @@ EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const 
     for (const SampleResult& result : results) {
         summary.failed += !result.ended();
         summary.not_at_rest += result.still_moves;
-        constexpr double noticeable = 1e-3;  // of the mass
-        summary.left_terrain += result.ended() && result.left_share > noticeable;
+        summary.left_terrain += result.left_terrain();
         summary.core_seconds += result.seconds;
     }
     summary.first_failure = first_failure_of(results);

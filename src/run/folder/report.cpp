@@ -11,6 +11,7 @@
 #include "base/version.h"
 #include "run/folder/comparison.h"
 #include "run/folder/gauge_table.h"
+#include "run/folder/left_terrain.h"
 #include "run/folder/run_folder.h"
 #include "run/folder/run_record.h"
 #include "scene/build_scene.h"
@@ -46,18 +47,6 @@ std::string heading(const RunRecord& r) {
                         reason_text(r));
     if (!r.command_line.empty()) text += fmt::format("The case file was overridden by `{}`.\n\n", r.command_line);
     return text;
-}
-
-/// Of two phases each has its own volume: that of the grains is without pores.
-std::string left_text(const RunRecord& r) {
-    // A sum of gains and losses of all that there was: what is below their round-off, or below zero, is none.
-    constexpr double kRoundOff = 1e-12;
-    const RunSummary& s = r.summary;
-    const double least = kRoundOff * (s.first.mass + mass_came_in(s.first, s.last)) / r.density;
-    const auto volume = [&](double left) { return fmt::format("{:.6g} m3", left > least ? left : 0.0); };
-    if (r.of_water_alone()) return volume(r.extras.water->left) + " of water";
-    if (!r.extras.water) return volume(r.summary.last.mass_left / r.density);
-    return volume(r.extras.water->solids_left) + " of grains and " + volume(r.extras.water->left) + " of water";
 }
 
 /// "took 12 300 m3 (growth 1.8), 0.7 m deep at most, budget 3e-16": volumes as they are in the flow. What it grew from is

@@ -26,6 +26,7 @@
 #include "run/folder/comparison.h"
 #include "run/folder/cutoff.h"
 #include "run/folder/gis_files.h"
+#include "run/folder/left_terrain.h"
 #include "run/folder/run_3d.h"
 #include "run/folder/run_figures.h"
 #include "run/folder/run_film.h"
@@ -134,6 +135,12 @@ void note_taken(RunRecord& record, const Scene& scene, const std::vector<Product
         record.taken_of_bed = taken_of_bed(scene, eroded->raster.geometry, eroded->raster.values);
 }
 
+/// The first of the remarks: it says what the figures of the run are worth.
+void note_left(RunRecord& record) {
+    if (std::string remark = remark_on_left(record); !remark.empty())
+        record.warnings.insert(record.warnings.begin(), std::move(remark));
+}
+
 /// footprint.geojson of a CRS without a code is in degrees or, where there is no way to them, looks so.
 void remark_on_unnamed_crs(const Raster& covered, bool has_layers, RunRecord& record) {
     if (covered.crs_wkt.empty()) return;
@@ -163,6 +170,7 @@ void compare_with_survey(const Scene& scene, const Raster& bed, const fs::path& 
         const std::optional<Raster> later = released_later_on(record.release_sources, record.extras.late, peak);
         Comparison comparison = compare_rasters(rasters, &bed, scene.output.footprint_depth, survey, record.starts,
                                                 later ? &*later : nullptr);
+        if (!record.of_water_alone()) remark_on_left(left_share(record), comparison);
         write_scores(run_dir, run_dir / "compare.json", comparison);
         if (scene.output.vtk)
             write_survey(run_dir, bed, *ever_covered(rasters), comparison.limit, rings_of(survey.footprint));
@@ -400,6 +408,7 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     note_results(record, rasters);
     note_section_ends(record, scene, rasters);
     note_taken(record, scene, rasters);
+    note_left(record);
     const Raster bed = shown_bed(scene, simulation, rasters);
     add_ground_at_end(rasters, bed, scene.bed_evolves());
     add_friction(scene, simulation, rasters);
@@ -442,6 +451,7 @@ RunRecord carry_out_in_memory(const Scene& scene, Simulation& simulation, RunRec
     if (scene.deposition || scene.forest) add_lying_depth(rasters);
     note_results(record, rasters);
     note_taken(record, scene, rasters);
+    note_left(record);
     add_ground_at_end(rasters, shown_bed(scene, simulation, rasters), scene.bed_evolves());
     add_friction(scene, simulation, rasters);
     return record;

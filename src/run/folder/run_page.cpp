@@ -10,6 +10,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "observe/table.h"
+#include "run/folder/left_terrain.h"
 #include "run/folder/run_film.h"
 #include "run/web/web_page.h"
 #include "scene/case_file.h"
@@ -21,7 +22,7 @@ namespace frana {
 namespace fs = std::filesystem;
 namespace {
 
-using PlainJson = nlohmann::json;
+using RecordJson = nlohmann::ordered_json;
 
 constexpr const char* kPage = "figures/view.html";
 
@@ -41,7 +42,7 @@ std::string measured(double value, const char* unit) {
     return grouped(value, decimals) + "\u2009" + unit;
 }
 
-std::string end_of(const PlainJson& record) {
+std::string end_of(const RecordJson& record) {
     std::string reason = record.value("exit_reason", "");
     if (reason == "rest") return "the mass came to rest";
     if (reason == "end") return "the simulated time was over";
@@ -51,14 +52,47 @@ std::string end_of(const PlainJson& record) {
 }
 
 /// At the start and later [m3]; runs of an earlier version do not tell the latter.
-double released_in_all(const PlainJson& record) {
+double released_in_all(const RecordJson& record) {
     return record.at("release_volume").get<double>() + record.value("release_volume_later", 0.0);
 }
 
-std::vector<std::pair<std::string, std::string>> facts_of(const PlainJson& record) {
-    const PlainJson &results = record.at("results"), &mass = record.at("budgets").at("mass");
-    std::vector<std::pair<std::string, std::string>> facts = {
-        {"Released", measured(released_in_all(record), "m\u00b3")},
+/// By inflows, rain and the like [m3].
+double came_in(const RecordJson& record) {
+    const RecordJson& budgets = record.at("budgets");
+    if (const auto water = budgets.find("water"); water != budgets.end())
+        return water->value("rained", 0.0) + water->value("entered", 0.0) + water->value("fed", 0.0);
+    const auto inflow = budgets.find("inflow");
+    return inflow != budgets.end() ? inflow->value("volume", 0.0) : 0.0;
+}
+
+/// Of the material, so that masses are volumes as they are in the flow [kg/m3].
+double density_of(const FigureSource& source, const RecordJson& record) {
+    const double mass = record.at("budgets").at("mass").at("initial"), volume = record.at("release_volume");
+    return source.density > 0.0 ? source.density : mass / std::max(volume, 1e-300);
+}
+
+/// What there was of the flow, and where it went. What there was none of has no row.
+std::vector<std::pair<std::string, std::string>> volumes_of(const FigureSource& source, const RecordJson& record) {
+    const RecordJson& budgets = record.at("budgets");
+    std::vector<std::pair<std::string, std::string>> facts;
+    const auto add = [&](const char* name, double volume) {
+        if (volume > 0.0) facts.emplace_back(name, measured(volume, "m\u00b3"));
+    };
+    add("Released", released_in_all(record));
+    add("Came in", came_in(record));
+    if (const auto bed = budgets.find("bed"); bed != budgets.end()) {
+        add("Taken of the bed", bed->value("taken_of_bed", 0.0) / density_of(source, record));
+        add("Became bed", bed->value("lies_behind", 0.0) / density_of(source, record));
+    }
+    if (const double left = left_share_in(record); left > 0.0)
+        facts.emplace_back("Left the terrain", fmt::format("{:.3g} % of all that flowed", 100.0 * left));
+    return facts;
+}
+
+std::vector<std::pair<std::string, std::string>> facts_of(const FigureSource& source, const RecordJson& record) {
+    const RecordJson &results = record.at("results"), &mass = record.at("budgets").at("mass");
+    std::vector<std::pair<std::string, std::string>> facts = volumes_of(source, record);
+    const std::vector<std::pair<std::string, std::string>> others = {
         {"Farthest front", measured(results.at("max_front"), "m")},
         {"Largest depth", measured(results.at("max_depth"), "m")},
         {"Largest speed", measured(results.at("max_speed"), "m/s")},
@@ -67,10 +101,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const PlainJson& recor
         {"Ended because", end_of(record)},
         {"Cells", measured(record.at("grid").at("cell"), "m")},
         {"Mass error", fmt::format("{:.1e}", mass.at("relative_error").get<double>())}};
-    const double left = mass.at("left_domain"),
-                 all = mass.at("initial").get<double>() + mass.at("came_in").get<double>();
-    if (left > 0.0 && all > 0.0)
-        facts.insert(facts.begin() + 1, {"Left the terrain", fmt::format("{:.3g} % of the mass", 100.0 * left / all)});
+    facts.insert(facts.end(), others.begin(), others.end());
     return facts;
 }
 
@@ -113,16 +144,31 @@ std::optional<PageDrape> drape_of(const FigureSource& source, const DrapeRule& r
     return drape;
 }
 
-/// The first run of the curves: history.csv; none where it is gone.
-PageCurves curves_of(const FigureSource& source, const PlainJson& record, std::vector<std::string>& warnings) {
+/// What has become bed at a time, straight between frames [m3].
+double lying_at(const std::vector<PackedFrame>& frames, double time) {
+    const auto after = std::find_if(frames.begin(), frames.end(), [&](const PackedFrame& f) { return f.time >= time; });
+    if (after == frames.end()) return frames.empty() ? 0.0 : frames.back().lying;
+    if (after == frames.begin()) return after->lying;
+    const PackedFrame& before = *(after - 1);
+    return before.lying + (after->lying - before.lying) * (time - before.time) / (after->time - before.time);
+}
+
+/// Of history.csv; none where it is gone. The volume is that of the depth on show: what has become bed counts.
+PageCurves curves_of(const FigureSource& source, const FlowFrames& frames, const RecordJson& record,
+                     std::vector<std::string>& warnings) {
     PageCurves curves;
+    curves.runout_name = "Farthest front from " + source.front_origin;
+    const auto lies = [](const PackedFrame& frame) { return frame.lying > 0.0; };
+    curves.volume_name = std::any_of(frames.frames().begin(), frames.frames().end(), lies)
+                             ? "Volume, with what has become bed"
+                             : "Volume";
     try {
         const Table history = read_table(source.run_dir / "history.csv");
         curves.time = history.column("t"), curves.runout = history.column("front"),
         curves.volume = history.column("mass");
-        const double mass = record.at("budgets").at("mass").at("initial"), volume = record.at("release_volume");
-        const double density = source.density > 0.0 ? source.density : mass / std::max(volume, 1e-300);
-        for (double& value : curves.volume) value /= density;
+        const double density = density_of(source, record);
+        for (std::size_t k = 0; k < curves.volume.size(); ++k)
+            curves.volume[k] = curves.volume[k] / density + lying_at(frames.frames(), curves.time[k]);
     } catch (const UserError& error) {
         warnings.push_back(fmt::format("{} shows no curves: {}", kPage, error.what()));
     }
@@ -150,11 +196,11 @@ PageTop top_of(const std::vector<PageDrape>& drapes, const char* name, double of
     return {of_frames > 0.0 ? of_frames : 1.0, false};
 }
 
-WebPage page_of(const FigureSource& source, const FlowFrames& frames, const PlainJson& record,
+WebPage page_of(const FigureSource& source, const FlowFrames& frames, const RecordJson& record,
                 std::vector<std::string>& warnings) {
     WebPage page;
     page.title = source.title, page.caption = source.footer;
-    page.facts = facts_of(record);
+    page.facts = facts_of(source, record);
     page.bed = source.bed;
     page.frames = &frames;
     for (const DrapeRule& rule : kDrapes)
@@ -171,7 +217,7 @@ WebPage page_of(const FigureSource& source, const FlowFrames& frames, const Plai
     for (const NamedLine& plan : inflow_plans(source.inflows)) page.lines.push_back({plan.name, plan.line});
     for (const Gauge& gauge : source.gauges) page.gauges.push_back({gauge.name, gauge.point});
     page.barriers = barriers_of(source);
-    page.curves = curves_of(source, record, warnings);
+    page.curves = curves_of(source, frames, record, warnings);
     if (frames.frames().empty())
         page.remarks.push_back(
             "The run left no frames, so there is no film of it: \"vtk\" or \"web\" in output.formats makes them.");
@@ -197,13 +243,15 @@ FlowFrames frames_of_run(const FigureSource& source) {
     for (Index number = 0; number < static_cast<Index>(times.size()); ++number) {
         LoadedFrame frame = read_frame(source.run_dir, number);
         if (!frame.has("depth")) continue;
+        const double lying =
+            frame.has("deposited_depth") ? volume_on(frame.grid, frame.nodes.at("deposited_depth").data()) : 0.0;
         add_deposit(frame);
         std::vector<double>& depth = frame.nodes.at("depth");
         if (frame.has("elevation"))
             for (std::size_t n = 0; n < depth.size(); ++n)
                 if (std::isnan(frame.nodes.at("elevation")[n])) depth[n] = 0.0;
         frames.add(number, times[static_cast<std::size_t>(number)],
-                   {frame.grid, depth.data(), frame.has("speed") ? frame.nodes.at("speed").data() : nullptr});
+                   {frame.grid, depth.data(), frame.has("speed") ? frame.nodes.at("speed").data() : nullptr}, lying);
     }
     return frames;
 }
@@ -214,7 +262,7 @@ void add_page(const FigureSource& source, const FlowFrames& frames, const std::s
     std::shared_ptr<const WebPage> page;
     if (why_not.empty()) try {
             std::vector<std::string> warnings;
-            page = std::make_shared<const WebPage>(page_of(source, frames, PlainJson::parse(record), warnings));
+            page = std::make_shared<const WebPage>(page_of(source, frames, RecordJson::parse(record), warnings));
             for (std::string& warning : warnings) gallery.warn(std::move(warning));
         } catch (const std::exception& error) {
             why_not = error.what();

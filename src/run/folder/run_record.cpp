@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "base/version.h"
+#include "run/folder/left_terrain.h"
 #include "run/folder/run_page.h"
 #include "scene/case_file.h"
 #include "scene/flow_start.h"
@@ -79,12 +80,14 @@ Json time_json(const RunSummary& s) {
             {"output_share", s.output_share()}};
 }
 
-Json mass_json(const RunSummary& s) {
+Json mass_json(const RunRecord& record) {
+    const RunSummary& s = record.summary;
     return {{"unit", "kg"},
             {"initial", s.first.mass},
             {"final", s.last.mass},
             {"came_in", mass_came_in(s.first, s.last)},
             {"left_domain", s.last.mass_left},
+            {"left_share", left_share(record)},
             {"relative_error", budget(s.first, s.last).mass_error}};
 }
 
@@ -415,7 +418,7 @@ std::string run_json(const RunRecord& record) {
                  {"wall_seconds", time_json(s)},
                  {"particle_steps", s.particle_steps},
                  {"particle_steps_per_second", per_second},
-                 {"budgets", {{"mass", mass_json(s)}, {"momentum", momentum_json(s)}, {"energy", energy_json(s)}}},
+                 {"budgets", {{"mass", mass_json(record)}, {"momentum", momentum_json(s)}, {"energy", energy_json(s)}}},
                  {"results", results_json(record)},
                  {"flow_width_cells", flow_width_cells(record)},
                  {"p2g_error_max", {{"mass", s.extremes.p2g_mass_error}, {"momentum", s.extremes.p2g_momentum_error}}},

@@ -15,13 +15,15 @@ public:
         const Field *depth = frame.node("depth"), *speed = frame.node("speed");
         if (depth == nullptr) return;
         const double* shown = depth->data;
+        double lying = 0.0;
         if (const Field* bed = frame.node("deposited_depth")) {  // what has become bed would vanish from the film
             with_bed_.resize(static_cast<std::size_t>(depth->count));
             for (std::size_t n = 0; n < with_bed_.size(); ++n)
                 with_bed_[n] = depth->data[n] + (bed->data[n] > 0.0 ? bed->data[n] : 0.0);
             shown = with_bed_.data();
+            lying = volume_on(frame.grid, bed->data);
         }
-        into_.add(frame.number, frame.status.time, {frame.grid, shown, speed ? speed->data : nullptr});
+        into_.add(frame.number, frame.status.time, {frame.grid, shown, speed ? speed->data : nullptr}, lying);
     }
     void serialize(Archive& archive) override { into_.serialize(archive); }
 
@@ -32,12 +34,20 @@ private:
 
 }  // namespace
 
-void FlowFrames::add(Index number, double time, const FlowFields& flow) {
+double volume_on(const GridGeometry& grid, const double* depth) {
+    double sum = 0.0;
+    for (Index k = 0; k < grid.size(); ++k)
+        if (depth[k] > 0.0) sum += depth[k];
+    return sum * grid.cell * grid.cell;
+}
+
+void FlowFrames::add(Index number, double time, const FlowFields& flow, double lying) {
     const auto between = [&](const PackedFrame& frame) { return frame.number % every_ != 0; };
     frames_.erase(std::remove_if(frames_.begin(), frames_.end(), between), frames_.end());
     frames_.push_back(packed(flow, wet_, kMostPixels));
     frames_.back().number = number;
     frames_.back().time = time;
+    frames_.back().lying = lying;
     const auto bytes = [&] {
         std::size_t sum = 0;
         for (const PackedFrame& frame : frames_) sum += frame.bytes.size();
@@ -59,14 +69,14 @@ void FlowFrames::serialize(Archive& archive) {
     for (const PackedFrame& f : frames_) {
         for (const double number : {static_cast<double>(f.number), f.time, static_cast<double>(f.grid.nx),
                                     static_cast<double>(f.grid.ny), f.grid.x0, f.grid.y0, f.grid.cell, f.deepest,
-                                    f.fastest, f.has_speed ? 1.0 : 0.0, static_cast<double>(f.bytes.size())})
+                                    f.fastest, f.has_speed ? 1.0 : 0.0, static_cast<double>(f.bytes.size()), f.lying})
             numbers.push_back(number);
         bytes.insert(bytes.end(), f.bytes.begin(), f.bytes.end());
     }
     archive.array("numbers", numbers);
     archive.array("bytes", bytes);
     if (!archive.loading()) return;
-    constexpr std::size_t kNumbers = 11;
+    constexpr std::size_t kNumbers = 12;
     if (numbers.size() != kNumbers * frames_.size())
         Archive::wrong_length("numbers", numbers.size(), kNumbers * frames_.size());
     std::size_t used = 0;
@@ -82,7 +92,8 @@ void FlowFrames::serialize(Archive& archive) {
                       n[7],
                       n[8],
                       n[9] != 0.0,
-                      {first, first + static_cast<std::ptrdiff_t>(size)}};
+                      {first, first + static_cast<std::ptrdiff_t>(size)},
+                      n[11]};
         used += size;
     }
 }

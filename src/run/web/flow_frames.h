@@ -15,7 +15,8 @@ public:
     /// `footprint_depth`: what is thinner than a hundredth of it is not stored [m]. `most`: bytes of all frames.
     explicit FlowFrames(double footprint_depth, std::size_t most = 14'000'000)
         : wet_(footprint_depth / 100.0), most_(most) {}
-    void add(Index number, double time, const FlowFields& flow);
+    /// `lying`: volume of what has become bed, which is a part of the flow's depth [m3].
+    void add(Index number, double time, const FlowFields& flow, double lying = 0.0);
     const std::vector<PackedFrame>& frames() const { return frames_; }
     Index every() const { return every_; }  ///< outputs for one that is stored: 1, 2, 4, ...
     void serialize(Archive& archive);
@@ -26,6 +27,9 @@ private:
     Index every_ = 1;
     std::vector<PackedFrame> frames_;
 };
+
+/// Volume of a depth that lies on nodes [m3].
+double volume_on(const GridGeometry& grid, const double* depth);
 
 /// Adds each output to `into`, which outlives it.
 std::unique_ptr<Observer> make_frame_keeper(FlowFrames& into);

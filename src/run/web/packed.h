@@ -31,6 +31,7 @@ struct PackedFrame {
     double deepest = 0.0, fastest = 0.0;  ///< top: that the last step ends at [m], [m/s]
     bool has_speed = false;
     std::vector<std::uint8_t> bytes;  ///< deflated: depths, then speeds
+    double lying = 0.0;               ///< of what has become bed, which is a part of the depth [m3]
 };
 
 /// Depth and speed on the nodes of a grid [m], [m/s].

@@ -204,7 +204,7 @@ function fillPage() {
   if (data.runs) get("shows").firstElementChild.textContent = "Probability of more", get("slider").setAttribute("aria-label", "Threshold");
   if (!moves() || !data.curves.time.length) return;
   const pick = time => goTo(nearest(data.frames.map(frame => frame.t), time));
-  charts = [["Runout from the release", "m", data.curves.runout], ["Volume", "m³", data.curves.volume]].map(([name, unit, values]) => {
+  charts = [[data.curves.runout_name, "m", data.curves.runout], [data.curves.volume_name, "m³", data.curves.volume]].map(([name, unit, values]) => {
     const chart = new Chart(get("strip"), pick);
     chart.show({name, unit, values, along: data.curves.time, alongUnit: "s"});
     return chart;

@@ -198,7 +198,11 @@ Json curves_json(const PageCurves& curves) {
         runout.push_back(short_number(curves.runout[k]));
         volume.push_back(short_number(curves.volume[k]));
     }
-    return {{"time", time}, {"runout", runout}, {"volume", volume}};
+    return {{"time", time},
+            {"runout", runout},
+            {"volume", volume},
+            {"runout_name", curves.runout_name},
+            {"volume_name", curves.volume_name}};
 }
 
 Json terrain_json(const WebPage& page, const Places& places, std::vector<std::string>& notes) {

@@ -46,6 +46,7 @@ struct PageBarrier {
 /// How far and how much, through time.
 struct PageCurves {
     std::vector<double> time, runout, volume;  ///< [s], [m], [m3]
+    std::string runout_name, volume_name;      ///< over the charts
 };
 
 /// How likely more than each of some thresholds is, and what shares of the runs do not exceed. A row of a table belongs to a
