@@ -6,6 +6,7 @@
 
 #include "ensemble/calibration_plan.h"
 #include "ensemble/posterior.h"
+#include "run/end_remarks.h"
 
 namespace frana {
 
@@ -13,6 +14,7 @@ namespace frana {
 struct EventFit {
     std::vector<EventScores> scores;
     std::vector<double> log_likelihood;  ///< without the event's weight
+    RemarkTally remarks = {};            ///< on the runs of the rounds
 };
 
 /// The point of the least misfit, where a search from the best of the rounds ended.

@@ -28,6 +28,7 @@ std::vector<double> take(const std::vector<std::vector<EventRun>>& runs, Calibra
             if (!run.ended() && found.failed == 0) found.first_failure = run.message.empty() ? run.reason : run.message;
             found.failed += !run.ended(), found.not_at_rest += run.still_moves;
             found.seconds += run.seconds;
+            found.fits[e].remarks.add(static_cast<Index>(found.fits[e].scores.size()), run.remarks);
             found.fits[e].scores.push_back(run.scores);
             found.fits[e].log_likelihood.push_back(log_likelihood(run.scores, event.objective, event.errors));
             all[k] += event.weight * found.fits[e].log_likelihood.back();

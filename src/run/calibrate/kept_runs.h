@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ensemble/calibration_plan.h"
+#include "run/end_remarks.h"
 #include "run/run_loop.h"
 
 namespace frana {
@@ -18,6 +19,7 @@ struct EventRun {
     double seconds = 0.0;         ///< wall time [s]
     EventScores scores;           ///< nothing known where the run has no answer
     bool still_moves = false;     ///< as of SampleResult
+    std::vector<EndRemark> remarks = {};
 
     bool ended() const { return has_answer(reason); }
 };

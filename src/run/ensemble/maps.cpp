@@ -249,6 +249,7 @@ EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const 
         constexpr double noticeable = 1e-3;  // of the mass
         summary.left_terrain += result.ended() && result.left_share > noticeable;
         summary.core_seconds += result.seconds;
+        summary.remarks.add(result.sample, result.remarks);
     }
     summary.first_failure = first_failure_of(results);
     const std::vector<std::string> before = files_of_last_time(dir);
