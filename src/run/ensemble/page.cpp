@@ -255,9 +255,13 @@ void write_runs(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBas
         file.put("{},{}", r.sample, point.weight);
         for (const std::string& value : point.values) file.put(",{}", csv_field(value));
         file.put(",{},{},{}", r.reason, r.time, r.steps);
-        for (const Outcome& outcome : outcomes) file.put(",{}", text_of_known(outcome.value(r)));
-        if (base.survey) file.put(",{},{}", text_of_known(r.iou), text_of_known(r.boundary));
-        file.put(",{},{},{}\n", r.left_share, r.mass_error, csv_field(r.message));
+        const auto known = [&](const std::optional<double>& number) {  // of a run without an answer nothing is
+            file.put(",{}", r.ended() ? text_of_known(number) : "");
+        };
+        for (const Outcome& outcome : outcomes) known(outcome.value(r));
+        if (base.survey) known(r.iou), known(r.boundary);
+        known(r.left_share), known(r.mass_error);
+        file.put(",{}\n", csv_field(r.message));
     }
     file.commit();
 }
