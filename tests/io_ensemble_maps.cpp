@@ -1,4 +1,5 @@
 // What `frana ensemble` tells of gauges, arrival, indices and hazard, on ponds whose answers are known.
+#include <fmt/format.h>
 #include <gdal_priv.h>
 
 #include <algorithm>
@@ -344,4 +345,27 @@ TEST_CASE("A run without weight reaches no place of an ensemble's page", "[ensem
     CHECK(reached > 0);
     CHECK(reached < 144);
     CHECK(runs.at("ladders").at(0).at("probabilities").at("ny") == reached);
+}
+
+TEST_CASE("The page of an ensemble gives a range of both ends alike", "[ensemble][page]") {
+    if (!frana::no_page_reason().empty()) {
+        WARN(frana::no_page_reason() << "; this test is skipped");
+        return;
+    }
+    const Pond pond;
+    const std::string cut = GENERATE("", "range = [1.0, 2.0]\n");
+    CAPTURE(cut);
+    pond.write("many.toml",
+               "[ensemble]\ncase = \"case.toml\"\nmethod = \"lhs\"\nsamples = 6\nquantiles = [0.5]\n"
+               "fields = [\"peak_depth\"]\n[[ensemble.vary]]\nkey = \"release.0.depth\"\n"
+               "distribution = \"lognormal\"\nmedian = 1.5\nfactor = 1.2\n" +
+                   cut);
+    const Outcome done = pond.frana("ensemble many.toml --out many --quiet");
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    std::vector<double> depths;
+    for (const std::string& depth : pond.column("many", "release.0.depth")) depths.push_back(std::stod(depth));
+    const auto [least, most] = std::minmax_element(depths.begin(), depths.end());
+    CHECK_THAT(text_of(pond.path("many/figures/view.html")),
+               Contains(cut.empty() ? fmt::format("{:.6g} to {:.6g}", *least, *most) : "1 to 2"));
 }
