@@ -360,12 +360,12 @@ TEST_CASE("The page of an ensemble gives a range of both ends alike", "[ensemble
                "fields = [\"peak_depth\"]\n[[ensemble.vary]]\nkey = \"release.0.depth\"\n"
                "distribution = \"lognormal\"\nmedian = 1.5\nfactor = 1.2\n" +
                    cut);
-    const Outcome done = pond.frana("ensemble many.toml --out many --quiet");
+    const auto done = pond.frana("ensemble many.toml --out many --quiet");
     INFO(done.err);
     REQUIRE(done.code == 0);
-    std::vector<double> depths;
-    for (const std::string& depth : pond.column("many", "release.0.depth")) depths.push_back(std::stod(depth));
-    const auto [least, most] = std::minmax_element(depths.begin(), depths.end());
+    std::vector<double> drawn;
+    for (const std::string& depth : pond.column("many", "release.0.depth")) drawn.push_back(std::stod(depth));
+    const auto [least, most] = std::minmax_element(drawn.begin(), drawn.end());
     CHECK_THAT(text_of(pond.path("many/figures/view.html")),
                Contains(cut.empty() ? fmt::format("{:.6g} to {:.6g}", *least, *most) : "1 to 2"));
 }

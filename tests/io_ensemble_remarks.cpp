@@ -38,7 +38,7 @@ public:
     }
     fs::path path(const std::string& name) const { return plane_.folder() / name; }
     void write(const std::string& name, const std::string& text) const { frana::write_text(path(name), text); }
-    Outcome frana(const std::string& arguments) const { return plane_.frana(arguments); }
+    auto frana(const std::string& arguments) const { return plane_.frana(arguments); }
     Json json(const std::string& name) const { return Json::parse(text_of(path(name))); }
 
 private:
@@ -58,7 +58,7 @@ std::vector<Json> that_say(const Json& all, const std::string& words) {
 TEST_CASE("An ensemble tells each remark of its runs once, with their number and as the worst run has it",
           "[ensemble]") {
     const RemarkedSlide slide;
-    const Outcome done = slide.frana("ensemble many.toml --out many");
+    const auto done = slide.frana("ensemble many.toml --out many");
     CHECK(done.code == 3);  // a run of four is refused
     std::size_t narrow = 0;
     std::string worst;
@@ -115,7 +115,7 @@ TEST_CASE("Rows with other columns, as of a build that stored no remarks, are re
     REQUIRE(text.find(",remarks\n") != std::string::npos);
     frana::write_text(rows, text.replace(text.find(",remarks\n"), 8, ""));
     for (const char* how : {"ensemble --join many", "ensemble many.toml --out many --resume"}) {
-        const Outcome old = slide.frana(how);
+        const auto old = slide.frana(how);
         CHECK(old.code == 2);
         CHECK_THAT(old.err, Contains("found rows of another build of frana") &&
                                 Contains("choose another folder with --out and run the ensemble anew"));
