@@ -27,6 +27,8 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 void say_result(const fs::path& dir, const EnsembleSummary& summary) {
     std::cout << runs_sentence(summary) << '\n';
+    for (const std::string& remark : summary.remarks.sentences(summary.run))
+        std::cout << "remark      " << remark << '\n';
     for (const std::string& file : summary.files) std::cout << (dir / file).string() << '\n';
 }
 

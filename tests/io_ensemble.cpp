@@ -282,6 +282,21 @@ TEST_CASE("runs that fail count by their weight", "[ensemble]") {
     CHECK_THAT(heavy.err, Contains("1 of 3 runs failed, more than 5 % of the weight"));
 }
 
+TEST_CASE("Of a run that is refused the table of runs has no numbers", "[ensemble]") {
+    const Pond pond;
+    pond.write("case.toml", text_of(pond.path("case.toml")) + "[survey]\nfootprint = \"west.geojson\"\n");
+    pond.write("many.toml", "[ensemble]\ncase = \"case.toml\"\nmethod = \"table\"\ntable = \"rows.csv\"\n");
+    pond.write("rows.csv", "release.0.outline\nall.geojson\ngone.geojson\n");
+    CHECK(pond.frana("ensemble many.toml --out many --quiet").code == 3);
+    REQUIRE(pond.column("many", "reason").at(1) == "refused");
+    for (const char* name : {"runout_m", "reach_m", "footprint_area_m2", "volume_m3", "max_depth_m", "max_speed_m_s",
+                             "iou", "boundary_m", "left_share", "mass_error"}) {
+        CAPTURE(name);
+        CHECK_FALSE(pond.column("many", name).at(0).empty());
+        CHECK(pond.column("many", name).at(1).empty());
+    }
+}
+
 TEST_CASE("runs that fail are counted and bound the maps, and stop no other", "[ensemble]") {
     const Pond pond;
     pond.write("many.toml",

@@ -1,4 +1,5 @@
 // What `frana ensemble` tells of gauges, arrival, indices and hazard, on ponds whose answers are known.
+#include <fmt/format.h>
 #include <gdal_priv.h>
 
 #include <algorithm>
@@ -262,6 +263,27 @@ TEST_CASE("A scenario without an answer is told with the classes of hazard, and 
     CHECK(fs::exists(pond.path("many/rasters/probability_reached.tif")));
 }
 
+TEST_CASE("Runs without weight count nowhere in classes of hazard", "[ensemble][hazard]") {
+    const Pond pond;
+    pond.write("many.toml",
+               "[ensemble]\ncase = \"case.toml\"\nmethod = \"table\"\ntable = \"rows.csv\"\nfields = [\"peak_depth\"]\n"
+               "quantiles = []\n[ensemble.hazard]\nyears = [30]\n"
+               "[[ensemble.hazard.class]]\nname = \"high\"\ncolour = \"#d81e28\"\n"
+               "[[ensemble.hazard.level]]\nclasses = [\"high\", \"none\"]\n");
+    // Of each scenario a run is lost. Those that flood all of the pond have no weight.
+    pond.write("rows.csv",
+               "release.0.outline,release.0.depth,weight,return_period\n\"west.geojson\",1.5,1,30\n"
+               "\"lost.geojson\",1.5,1,30\n\"all.geojson\",1.5,0,30\n\"lost.geojson\",1.5,1,300\n"
+               "\"all.geojson\",1.6,0,300\n");
+    CHECK(pond.frana("ensemble many.toml --out many --quiet").code == 3);  // more than a twentieth failed
+    const Json hazard = Json::parse(text_of(pond.path("many/ensemble.json")))["hazard"], high = hazard["classes"][0];
+    CHECK(hazard["remark"] ==
+          "1 of 2 runs of the scenario of 30 years have no answer: classes may be wrong either way, within the bounds "
+          "told. No run of the scenario of 300 years has an answer: its classes are missing. ");
+    CHECK(high["area_m2"].get<double>() < 3600.0);  // of the pond
+    CHECK(high["area_if_unanswered_came_everywhere_m2"] == high["area_m2"]);
+}
+
 TEST_CASE("The page of an ensemble holds the shares of its runs above each threshold, and their quantiles",
           "[ensemble][page]") {
     if (!frana::no_page_reason().empty()) {
@@ -323,4 +345,27 @@ TEST_CASE("A run without weight reaches no place of an ensemble's page", "[ensem
     CHECK(reached > 0);
     CHECK(reached < 144);
     CHECK(runs.at("ladders").at(0).at("probabilities").at("ny") == reached);
+}
+
+TEST_CASE("The page of an ensemble gives a range of both ends alike", "[ensemble][page]") {
+    if (!frana::no_page_reason().empty()) {
+        WARN(frana::no_page_reason() << "; this test is skipped");
+        return;
+    }
+    const Pond pond;
+    const std::string cut = GENERATE("", "range = [1.0, 2.0]\n");
+    CAPTURE(cut);
+    pond.write("many.toml",
+               "[ensemble]\ncase = \"case.toml\"\nmethod = \"lhs\"\nsamples = 6\nquantiles = [0.5]\n"
+               "fields = [\"peak_depth\"]\n[[ensemble.vary]]\nkey = \"release.0.depth\"\n"
+               "distribution = \"lognormal\"\nmedian = 1.5\nfactor = 1.2\n" +
+                   cut);
+    const auto done = pond.frana("ensemble many.toml --out many --quiet");
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    std::vector<double> drawn;
+    for (const std::string& depth : pond.column("many", "release.0.depth")) drawn.push_back(std::stod(depth));
+    const auto [least, most] = std::minmax_element(drawn.begin(), drawn.end());
+    CHECK_THAT(text_of(pond.path("many/figures/view.html")),
+               Contains(cut.empty() ? fmt::format("{:.6g} to {:.6g}", *least, *most) : "1 to 2"));
 }

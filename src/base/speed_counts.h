@@ -6,4 +6,6 @@ namespace frana {
 /// faster than all of it.
 inline constexpr double kSpeedCounts = 0.1;
 
+inline bool speed_counts(double depth, double footprint_depth) { return depth >= kSpeedCounts * footprint_depth; }
+
 }  // namespace frana

@@ -6,6 +6,7 @@
 
 #include "ensemble/calibration_plan.h"
 #include "ensemble/posterior.h"
+#include "run/end_remarks.h"
 
 namespace frana {
 
@@ -14,6 +15,7 @@ struct EventFit {
     std::vector<EventScores> scores;
     std::vector<double> log_likelihood;  ///< without the event's weight
     std::vector<double> left_share;      ///< of all that flowed, that left the terrain [1]
+    RemarkTally remarks = {};            ///< on the runs of the rounds
 };
 
 /// The point of the least misfit, where a search from the best of the rounds ended.

@@ -11,7 +11,7 @@ namespace frana {
 /// The largest of a gauge, where the flow came deeper than the footprint depth; nothing where it never did.
 struct GaugePeak {
     std::optional<double> depth;    ///< [m]
-    std::optional<double> speed;    ///< along the bed, as in the tables of gauges [m/s]
+    std::optional<double> speed;    ///< along the bed, where speed_counts(), as in the gauges' table of a run [m/s]
     std::optional<double> arrival;  ///< the first time of it [s]
 };
 
@@ -19,7 +19,7 @@ struct GaugePeak {
 class GaugePeaks : public Observer {
 public:
     GaugePeaks(const std::vector<Gauge>& gauges, double footprint_depth)
-        : gauges_(gauges), footprint_depth_(footprint_depth), peaks_(gauges.size()) {}
+        : gauges_(gauges), footprint_depth_(footprint_depth), peaks_(gauges.size()), fastest_(gauges.size(), 0.0) {}
     std::string name() const override { return "gauges"; }
     bool looks_at_fields() const override { return false; }
     void step(const Status& now, const Probe& probe) override;
@@ -30,6 +30,7 @@ private:
     const std::vector<Gauge>& gauges_;
     double footprint_depth_;
     std::vector<GaugePeak> peaks_;
+    std::vector<double> fastest_;  ///< also before the flow is deep enough to have come [m/s]
 };
 
 }  // namespace frana

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "compare/deposit.h"
 #include "compare/flow_tracks.h"
+#include "compare/flow_width.h"
 #include "compare/overlap.h"
 #include "compare/runout.h"
 #include "observe/budget.h"
@@ -146,16 +147,25 @@ void measure_extent(const EnsembleBase& base, const Scene& scene, const Raster& 
     result.runout = fronts_along(paths, rings, cell).front().place;
 }
 
-void measure(const Scene& scene, const EnsembleBase& base, const RunSummary& run, const LastPeaks& peaks,
-             double infiltrated, SampleResult& result) {
-    if (peaks.values.empty()) return;
+/// How deep each place was covered ever, by flow or by what lies there.
+Raster ever_covered(const LastPeaks& peaks) {
     Raster depth;
     depth.geometry = peaks.grid, depth.values = peaks.values.front();
-    if (!peaks.lying.empty()) {
-        Raster lying = depth;
-        lying.values = peaks.lying;
-        depth = deepest_cover(depth, lying);
-    }
+    if (peaks.lying.empty()) return depth;
+    Raster lying = depth;
+    lying.values = peaks.lying;
+    return deepest_cover(depth, lying);
+}
+
+void remark_on_width(const Raster& depth, const EnsembleBase& base, const Simulation& simulation,
+                     SampleResult& result) {
+    const double width = flow_width(depth, base.footprint_depth), cell = base.whole.cell;
+    std::string text = width_remark(width, cell, !of_water_alone(simulation.extras()));
+    if (!text.empty()) result.remarks.push_back({std::move(text), -width / cell});
+}
+
+void measure(const Scene& scene, const EnsembleBase& base, const RunSummary& run, const LastPeaks& peaks,
+             const Raster& depth, double infiltrated, SampleResult& result) {
     std::vector<const double*> fields;
     for (const auto& field : peaks.values) fields.push_back(field.data());
     result.peaks = sparse_of(fields, depth.values.data(), peaks.grid, base.whole, base.footprint_depth);
@@ -196,8 +206,12 @@ void run_scene(const EnsemblePlan& plan, const EnsembleBase& base, const Scene& 
     result.reason = run.reason, result.message = run.failure_text, result.still_moves = run.still_moves();
     result.time = run.last.time, result.steps = run.steps;
     result.gauges = gauges.peaks();
+    result.remarks = remarks_at_end(*simulation, run);
+    if (peaks.values.empty()) return;
+    const Raster depth = ever_covered(peaks);
+    remark_on_width(depth, base, *simulation, result);
     const std::optional<WaterBudget> water = simulation->extras().water;
-    measure(scene, base, run, peaks, water ? water->infiltrated_mass : 0.0, result);
+    measure(scene, base, run, peaks, depth, water ? water->infiltrated_mass : 0.0, result);
 }
 
 }  // namespace

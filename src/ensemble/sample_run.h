@@ -11,6 +11,7 @@
 #include "ensemble/plan.h"
 #include "observe/left_terrain.h"
 #include "observe/observer.h"
+#include "run/end_remarks.h"
 #include "run/interrupt.h"
 #include "run/run_loop.h"
 #include "scene/case_file.h"
@@ -74,6 +75,7 @@ struct SampleResult {
     std::optional<double> iou;                ///< of the footprint with the surveyed one, where there is one [1]
     std::optional<double> boundary;           ///< mean distance of their outlines; nothing where nothing flowed [m]
     std::vector<GaugePeak> gauges;            ///< of the base's
+    std::vector<EndRemark> remarks;           ///< as a run of its own has them, of what is known here
     SparseRasters peaks;  ///< the plan's fields where the ground was covered, by flow or by what lies there
 
     bool ended() const { return has_answer(reason); }

@@ -210,7 +210,9 @@ class Problems(InEnsemble):
             warnings.simplefilter("always")
             found = ensemble.run(threads=1)
         self.assertIn("more than 5 %", str(caught[-1].message))
-        self.assertIn("refused", found.runs["reason"])
+        runs = found.runs
+        self.assertIn("refused", runs["reason"])
+        numpy.testing.assert_array_equal(numpy.isnan(runs["runout_m"]), runs["reason"] == "refused")
 
 
 if __name__ == "__main__":

@@ -31,6 +31,7 @@ std::vector<double> take(const std::vector<std::vector<EventRun>>& runs, Calibra
             found.seconds += run.seconds;
             found.left_terrain += run.ended() && run.left_share > kNoticeablyLeft;
             found.fits[e].left_share.push_back(run.left_share);
+            found.fits[e].remarks.add(static_cast<Index>(found.fits[e].scores.size()), run.remarks);
             found.fits[e].scores.push_back(run.scores);
             found.fits[e].log_likelihood.push_back(log_likelihood(run.scores, event.objective, event.errors));
             all[k] += event.weight * found.fits[e].log_likelihood.back();

@@ -54,8 +54,8 @@ std::optional<EventRun> EventRuns::run(std::size_t event, const EnsemblePlan& po
     const auto result = run_sample(points, bases_[event], static_cast<Index>(point), reader_, meshes_, interrupt_,
                                    surveys_[event].watch(scores));
     if (!result) return std::nullopt;
-    return EventRun{result->reason,      result->message,   result->seconds, result->ended() ? scores : EventScores{},
-                    result->still_moves, result->left_share};
+    return EventRun{result->reason,      result->message,    result->seconds, result->ended() ? scores : EventScores{},
+                    result->still_moves, result->left_share, result->remarks};
 }
 
 }  // namespace frana

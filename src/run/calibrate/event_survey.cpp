@@ -113,7 +113,7 @@ void EventSurvey::read_gauges(const SurveyedEvent& event) {
             const std::string& name = file.word(fmt::format("gauge.{}.name", k));
             names += (names.empty() ? "" : ", ") + name;
             const std::vector<double>& point = file.numbers(fmt::format("gauge.{}.point", k));
-            if (name == seen.name) gauges_.push_back({{point[0], point[1]}, seen});
+            if (name == seen.name) gauges_.push_back({name, {point[0], point[1]}}), seen_.push_back(seen);
         }
         require_visible(event, seen);
         if (gauges_.size() == before)
@@ -128,17 +128,11 @@ void EventSurvey::read_gauges(const SurveyedEvent& event) {
 class EventSurvey::Watch : public Observer {
 public:
     Watch(const EventSurvey& event, EventScores& scores)
-        : event_(event), scores_(scores), depths_(event.gauges_.size(), 0.0), speeds_(event.gauges_.size(), 0.0) {}
+        : event_(event), scores_(scores), gauges_(event.gauges_, event.limit_) {}
     std::string name() const override { return "survey"; }
     bool looks_at_fields() const override { return false; }  // at the end it does
 
-    void step(const Status&, const Probe& probe) override {
-        for (std::size_t k = 0; k < depths_.size(); ++k) {
-            const Sample flow = probe.at(event_.gauges_[k].point);
-            depths_[k] = std::max(depths_[k], flow.depth);
-            if (flow.depth > event_.limit_) speeds_[k] = std::max(speeds_[k], flow.speed);
-        }
-    }
+    void step(const Status& now, const Probe& probe) override { gauges_.step(now, probe); }
 
     void end(const Frame& last) override {
         const std::vector<ProductRaster> rasters = product_rasters(last, event_.crs_wkt_);
@@ -195,16 +189,17 @@ private:
             const double apart = std::log(std::max(ours, least) / *theirs);
             square += apart * apart, number += 1.0;
         };
-        for (std::size_t k = 0; k < depths_.size(); ++k) {
-            add(depths_[k], event_.gauges_[k].seen.depth, event_.limit_);
-            add(speeds_[k], event_.gauges_[k].seen.speed, kSlow);
+        for (std::size_t k = 0; k < event_.seen_.size(); ++k) {
+            const GaugePeak& peak = gauges_.peaks()[k];
+            add(peak.depth.value_or(0.0), event_.seen_[k].depth, event_.limit_);
+            add(peak.speed.value_or(0.0), event_.seen_[k].speed, kSlow);
         }
         return {number > 0.0 ? std::sqrt(square / number) : 0.0, number};
     }
 
     const EventSurvey& event_;
     EventScores& scores_;
-    std::vector<double> depths_, speeds_;  ///< by gauge, the largest
+    GaugePeaks gauges_;
 };
 
 std::unique_ptr<Observer> EventSurvey::watch(EventScores& scores) const {

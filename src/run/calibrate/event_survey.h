@@ -23,11 +23,6 @@ public:
 
 private:
     class Watch;
-    /// A gauge of the case, and what was seen there.
-    struct Seen {
-        Vec2 point{0, 0};  ///< [m]
-        SeenAtGauge seen;
-    };
     bool counts(Evidence evidence) const;
     void require_visible(const SurveyedEvent& event, const SeenAtGauge& seen) const;
     void read_gauges(const SurveyedEvent& event);
@@ -37,10 +32,11 @@ private:
     std::optional<Raster> bed_;    ///< under a path that was drawn, which may be uphill; nothing without one
     std::optional<Raster> later_;  ///< 1: a release may enter there after the start
     Survey survey_;
-    double limit_ = 0.1;        ///< deeper counts as covered [m]
-    double correlation_ = 1.0;  ///< [m]
-    double perimeter_ = 0.0;    ///< of the surveyed outline [m]
-    std::vector<Seen> gauges_;
+    double limit_ = 0.1;             ///< deeper counts as covered [m]
+    double correlation_ = 1.0;       ///< [m]
+    double perimeter_ = 0.0;         ///< of the surveyed outline [m]
+    std::vector<Gauge> gauges_;      ///< of the case, where something was seen
+    std::vector<SeenAtGauge> seen_;  ///< what, by gauge
 };
 
 }  // namespace frana

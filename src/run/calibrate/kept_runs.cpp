@@ -45,7 +45,7 @@ RowsOf rows_of(const CalibrationPlan& plan) {
         const char* word = kind_of(evidence).word;
         rows.columns += fmt::format(",{0}_rms,{0}_number,{0}_unsurveyed_m3", word);
     }
-    rows.columns += ",message";
+    rows.columns += ",remarks,message";
     return rows;
 }
 
@@ -58,7 +58,7 @@ std::string row_of(const EventRun& run) {
                                   text_of_known(run.scores.iou), text_of_known(run.scores.boundary));
     for (const auto& misfit : run.scores.misfits)
         row += misfit ? fmt::format(",{},{},{}", misfit->rms, misfit->number, misfit->unsurveyed) : ",,,";
-    return row + "," + plain_field(run.message) + "\n";
+    return row + "," + remarks_field(run.remarks) + "," + plain_field(run.message) + "\n";
 }
 
 /// What the fields from `at` on say.
@@ -74,6 +74,7 @@ EventRun run_of(const std::vector<std::string>& fields, std::size_t at) {
     for (std::size_t k = 0; k < kEvidence; ++k)
         if (const std::size_t from = at + kFieldsOfRun + kFieldsOfMisfit * k; const auto rms = known(from))
             run.scores.misfits[k] = Misfit{*rms, known(from + 1).value_or(0.0), known(from + 2).value_or(0.0)};
+    run.remarks = remarks_of_field(fields[fields.size() - 2]);
     run.message = fields.back();
     return run;
 }
@@ -87,7 +88,8 @@ KeptRuns::KeptRuns(const fs::path& dir, const CalibrationPlan& plan) : file_(fil
     rows_ = of.head();
     if (!fs::exists(file_)) return;
     const std::size_t keys = plan.vary.size(),
-                      fields_of_a_row = 1 + keys + kFieldsOfRun + kFieldsOfMisfit * kEvidence + 1;
+                      fields_of_a_row =
+                          1 + keys + kFieldsOfRun + kFieldsOfMisfit * kEvidence + 2;  // and remarks, message
     for_each_row(file_, of, [&](const std::string& line) {
         const std::vector<std::string> fields = comma_fields(line);
         if (fields.size() != fields_of_a_row) throw broken_row(file_, line);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ensemble/calibration_plan.h"
+#include "run/end_remarks.h"
 #include "run/run_loop.h"
 
 namespace frana {
@@ -19,6 +20,7 @@ struct EventRun {
     EventScores scores;           ///< nothing known where the run has no answer
     bool still_moves = false;     ///< as of SampleResult
     double left_share = 0.0;      ///< as of SampleResult [1]
+    std::vector<EndRemark> remarks = {};
 
     bool ended() const { return has_answer(reason); }
 };

@@ -187,6 +187,9 @@ std::string calibration_section(const Calibration& c) {
     if (effective < kNoSpread) page += " Fewer than 5 have no spread that means anything, so it is left out.";
     if (effective < kFewSamples) page += " Fewer than 50 are few: give more samples or rounds, or a larger sigma.";
     for (const std::string& remark : c.remarks) page += fmt::format("\n\n{}.", remark);
+    for (std::size_t e = 0; e < c.fits.size(); ++e)
+        for (const std::string& remark : c.fits[e].remarks.sentences(static_cast<Index>(w.size())))
+            page += fmt::format("\n\n{}: {}.", c.plan.events[e].name, remark);
     return page + "\n\n" + misfits_section(c, best) + predictions_section(c);
 }
 

@@ -14,6 +14,7 @@
 #include "ensemble/predictions.h"
 #include "ensemble/statistics.h"
 #include "run/calibrate/kept_runs.h"
+#include "run/ensemble/remarks_json.h"
 #include "run/ensemble/shard_store.h"
 #include "vtk_io/figures/chart_figure.h"
 
@@ -60,6 +61,7 @@ Json events_json(const Calibration& c) {
         for (std::size_t f = 0; c.fits.size() > 1 && f < c.fits.size(); ++f)
             event["boundary_by_one"].push_back(known(rows[e].by_one[f].mean));
         event["misfits"] = misfits_json(c.plan.events[e], scores);
+        event["remarks_on_runs"] = shared_remarks_json(c.fits[e].remarks.all());
         all.push_back(event);
     }
     return all;

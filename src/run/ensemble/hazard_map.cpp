@@ -24,10 +24,13 @@ std::string rule_of(const HazardTable& table) {
 std::string remark_on_scenarios(const HazardTable& table, const EnsemblePlan& plan, const WeightedRuns& of) {
     if (table.event_years) return "";
     std::map<double, std::pair<Index, Index>> scenarios;  // runs with an answer, of how many
+    Index weighted = 0;                                   // others tell nothing
     for (const SamplePoint& point : plan.points)
-        if (point.weight > 0.0) ++scenarios[point.return_period].second;
-    for (const SampleResult* run : of.ended)
-        ++scenarios[plan.points[static_cast<std::size_t>(run->sample)].return_period].first;
+        if (point.weight > 0.0) ++scenarios[point.return_period].second, ++weighted;
+    for (const SampleResult* run : of.ended) {
+        const SamplePoint& point = plan.points[static_cast<std::size_t>(run->sample)];
+        if (point.weight > 0.0) ++scenarios[point.return_period].first;
+    }
     constexpr Index few = 10;  // runs, of which a share of a half is known to a sixth
     std::string remark;
     for (const auto& [years, runs] : scenarios) {
@@ -43,7 +46,7 @@ std::string remark_on_scenarios(const HazardTable& table, const EnsemblePlan& pl
         else if (answered < few && all > 1)
             remark += fmt::format("The scenario of {:g} years has {} runs only. ", years, answered);
     }
-    if (static_cast<Index>(scenarios.size()) * 2 > static_cast<Index>(plan.points.size()) && plan.points.size() > few)
+    if (static_cast<Index>(scenarios.size()) * 2 > weighted && weighted > few)
         remark = "Nearly each run has a return period of its own: give runs of one scenario the same. ";
     return remark;
 }
@@ -86,7 +89,8 @@ ScenarioRuns runs_of(const EnsemblePlan& plan, const WeightedRuns& of) {
     for (std::size_t k = 0; k < of.ended.size(); ++k) {
         const auto sample = static_cast<std::size_t>(of.ended[k]->sample);
         answered[sample] = 1;
-        all.runs.push_back({&all.reached[k], of.weights[k], plan.points[sample].return_period});
+        if (of.weights[k] > 0.0)
+            all.runs.push_back({&all.reached[k], of.weights[k], plan.points[sample].return_period});
     }
     for (std::size_t k = 0; k < plan.points.size(); ++k)
         if (!answered[k] && plan.points[k].weight > 0.0) {

@@ -3,8 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
@@ -33,7 +35,60 @@ void require_same(const fs::path& file, const std::string& found, const RowsOf& 
         file.string(), what, of.what));
 }
 
+UserError other_columns(const fs::path& file, const RowsOf& of) {
+    return UserError(fmt::format(
+        "{}: found rows of another build of frana, which kept other numbers of its runs; expected the columns of this "
+        "one; choose another folder with --out and run the {} anew, or take that build",
+        file.string(), of.what));
+}
+
+/// Letters that end a field, a row or a remark, and the one that codes begin with.
+constexpr const char* kEscaped = "%,|\n\r";
+
+std::string escaped(const std::string& text) {
+    std::string field;
+    for (const char letter : text)
+        if (std::strchr(kEscaped, letter) != nullptr)
+            field += fmt::format("%{:02X}", static_cast<unsigned char>(letter));
+        else
+            field += letter;
+    return field;
+}
+
+std::string unescaped(const std::string& field) {
+    std::string text;
+    for (std::size_t k = 0; k < field.size(); ++k) {
+        if (field[k] != '%') {
+            text += field[k];
+            continue;
+        }
+        const std::string code = field.substr(k + 1, 2);
+        if (code.size() < 2) throw std::invalid_argument("half a letter");
+        text += static_cast<char>(std::stoi(code, nullptr, 16));
+        k += 2;
+    }
+    return text;
+}
+
 }  // namespace
+
+std::string remarks_field(const std::vector<EndRemark>& remarks) {
+    std::string field;
+    for (const EndRemark& remark : remarks)
+        field += fmt::format("{}{} {}", field.empty() ? "" : "|", remark.worse, escaped(remark.text));
+    return field;
+}
+
+std::vector<EndRemark> remarks_of_field(const std::string& field) {
+    std::vector<EndRemark> remarks;
+    std::istringstream stream(field);
+    for (std::string one; std::getline(stream, one, '|');) {
+        const std::size_t blank = one.find(' ');
+        if (blank == std::string::npos) throw std::invalid_argument("no remark");
+        remarks.push_back({unescaped(one.substr(blank + 1)), kept_number(one.substr(0, blank))});
+    }
+    return remarks;
+}
 
 std::string text_in(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
@@ -78,7 +133,7 @@ void for_each_row(const fs::path& file, const RowsOf& of, const std::function<vo
     std::getline(stream, line);
     require_same(file, line, of);
     std::getline(stream, line);
-    if (line != of.columns) throw broken_row(file, line);
+    if (line != of.columns) throw other_columns(file, of);
     while (std::getline(stream, line)) body(line);
 }
 

@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
+#include "run/end_remarks.h"
 
 namespace frana {
 
@@ -17,6 +19,11 @@ std::uint64_t sum_of(const std::string& text);
 
 /// A text as a field that ends neither a field nor a line.
 std::string plain_field(std::string text);
+
+/// Remarks as a field, and back: each is "HOW_BAD TEXT", with | between them and %XX for what would end a field.
+std::string remarks_field(const std::vector<EndRemark>& remarks);
+/// Throws std::logic_error where it is none.
+std::vector<EndRemark> remarks_of_field(const std::string& field);
 
 /// A field of a row. Throws std::invalid_argument where it is no number.
 double kept_number(const std::string& field);

@@ -248,6 +248,7 @@ EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const 
         summary.not_at_rest += result.still_moves;
         summary.left_terrain += result.left_terrain();
         summary.core_seconds += result.seconds;
+        summary.remarks.add(result.sample, result.remarks);
     }
     summary.first_failure = first_failure_of(results);
     const std::vector<std::string> before = files_of_last_time(dir);

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "run/end_remarks.h"
 #include "run/ensemble/shard_store.h"
 
 namespace frana {
@@ -30,6 +31,7 @@ struct EnsembleSummary {
     bool maps_drawn = true;
     std::vector<HazardArea> hazard;  ///< from the least to the greatest; empty without classes
     std::string hazard_remark;       ///< what to mind about the classes, in sentences; empty where nothing
+    RemarkTally remarks;             ///< on single runs
     std::vector<std::string> files;  ///< that were made
 
     /// So many fail that the maps should not be trusted.

@@ -10,6 +10,7 @@
 #include "base/version.h"
 #include "ensemble/vary_words.h"
 #include "run/ensemble/outcomes.h"
+#include "run/ensemble/remarks_json.h"
 #include "run/ensemble/shard_store.h"
 
 namespace frana {
@@ -180,6 +181,7 @@ Json record_of(const EnsemblePlan& plan, const EnsembleBase& base, const Ensembl
     const Json sensitivity = sensitivity_json(plan, base, results);
     if (!sensitivity.empty()) json["sensitivity"] = sensitivity;
     json["remarks"] = base.remarks;
+    json["remarks_on_runs"] = shared_remarks_json(summary.remarks.all());
     if (summary.failed > 0) json["first_failure"] = summary.first_failure;
     json["files"] = summary.files;
     return json;
@@ -228,6 +230,9 @@ std::string page_of(const EnsemblePlan& plan, const EnsembleBase& base, const En
             page += fmt::format("- `{}`: {}\n", vary.key, words_of(vary));
     if (!base.remarks.empty()) page += "\nRemarks on the case:\n\n";
     for (const std::string& remark : base.remarks) page += fmt::format("- {}\n", remark);
+    const std::vector<std::string> on_runs = summary.remarks.sentences(summary.run);
+    if (!on_runs.empty()) page += "\nRemarks on the runs:\n\n";
+    for (const std::string& remark : on_runs) page += fmt::format("- {}\n", remark);
     page += "\nFiles:\n\n";
     for (const std::string& file : summary.files) page += fmt::format("- {}\n", file);
     return page + "\nA share of runs is the probability of an event only as far as what varies, and how, is known.\n";
@@ -250,9 +255,13 @@ void write_runs(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBas
         file.put("{},{}", r.sample, point.weight);
         for (const std::string& value : point.values) file.put(",{}", csv_field(value));
         file.put(",{},{},{}", r.reason, r.time, r.steps);
-        for (const Outcome& outcome : outcomes) file.put(",{}", text_of_known(outcome.value(r)));
-        if (base.survey) file.put(",{},{}", text_of_known(r.iou), text_of_known(r.boundary));
-        file.put(",{},{},{}\n", r.left_share, r.mass_error, csv_field(r.message));
+        const auto known = [&](const std::optional<double>& number) {  // of a run without an answer nothing is
+            file.put(",{}", r.ended() ? text_of_known(number) : "");
+        };
+        for (const Outcome& outcome : outcomes) known(outcome.value(r));
+        if (base.survey) known(r.iou), known(r.boundary);
+        known(r.left_share), known(r.mass_error);
+        file.put(",{}\n", csv_field(r.message));
     }
     file.commit();
 }

@@ -24,8 +24,8 @@ constexpr std::size_t kAtOnce = 64;            ///< runs in a file, when they ar
 constexpr std::chrono::seconds kPatience{10};  ///< and when they are slow
 constexpr const char* kColumns =
     "sample,reason,time_s,steps,seconds,volume_m3,runout_m,reach_m,footprint_area_m2,max_depth_m,max_speed_m_s,"
-    "eroded_m3,deposited_m3,left_share,mass_error,iou,boundary_m,still_moves,peaks,message";
-constexpr std::size_t kColumnCount = 20;
+    "eroded_m3,deposited_m3,left_share,mass_error,iou,boundary_m,still_moves,peaks,message,remarks";
+constexpr std::size_t kColumnCount = 21;
 constexpr std::size_t kGaugeColumns = 3;  ///< of each gauge, behind those
 
 std::string columns_of(const std::vector<Gauge>& gauges) {
@@ -37,10 +37,10 @@ std::string columns_of(const std::vector<Gauge>& gauges) {
 /// Of what was refused before its first step there are no gauges: their fields are empty too.
 std::string row_of(const SampleResult& r, const std::string& peaks, std::size_t gauges) {
     std::string row =
-        fmt::format("{},{},{},{},{:.3f},{},{},{},{},{},{},{},{},{},{},{},{},{:d},{},{}", r.sample, r.reason, r.time,
+        fmt::format("{},{},{},{},{:.3f},{},{},{},{},{},{},{},{},{},{},{},{},{:d},{},{},{}", r.sample, r.reason, r.time,
                     r.steps, r.seconds, r.volume, r.runout, r.reach, r.footprint_area, r.max_depth, r.max_speed,
                     r.eroded, r.deposited, r.left_share, r.mass_error, text_of_known(r.iou), text_of_known(r.boundary),
-                    r.still_moves, peaks, plain_field(r.message));
+                    r.still_moves, peaks, plain_field(r.message), remarks_field(r.remarks));
     for (std::size_t k = 0; k < gauges; ++k) {
         const GaugePeak peak = k < r.gauges.size() ? r.gauges[k] : GaugePeak();
         row +=
@@ -64,7 +64,7 @@ std::pair<SampleResult, std::string> result_of(const fs::path& file, const std::
             return f[k].empty() ? std::nullopt : std::optional<double>(kept_number(f[k]));
         };
         r.iou = known(15), r.boundary = known(16);
-        r.still_moves = kept_number(f[17]) != 0.0, r.message = f[19];
+        r.still_moves = kept_number(f[17]) != 0.0, r.message = f[19], r.remarks = remarks_of_field(f[20]);
         for (std::size_t k = kColumnCount; k < f.size(); k += kGaugeColumns)
             r.gauges.push_back({known(k), known(k + 1), known(k + 2)});
     } catch (const std::logic_error&) {  // what the conversions say of text that is no number

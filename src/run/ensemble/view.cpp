@@ -168,7 +168,7 @@ private:
         return table;
     }
 
-    /// "2 to 6 m", or how many values: where the distribution has no ends, those of the samples.
+    /// "2 to 6 m", or how many values: where the distribution lacks an end, both are those of the samples.
     std::string range_of(std::size_t key) const {
         double low = INFINITY, high = -INFINITY;
         for (const SamplePoint& point : plan_.points) {
@@ -179,8 +179,7 @@ private:
         }
         const Distribution& drawn = plan_.vary[key].distribution;
         const bool known = plan_.method != Method::table && drawn.kind != Distribution::Kind::discrete;
-        if (known && std::isfinite(drawn.low)) low = drawn.low;
-        if (known && std::isfinite(drawn.high)) high = drawn.high;
+        if (known && std::isfinite(drawn.low) && std::isfinite(drawn.high)) low = drawn.low, high = drawn.high;
         const Parameter* parameter = find_parameter(plan_.vary[key].key);
         const std::string unit = parameter == nullptr || parameter->unit == "1" ? "" : parameter->unit;
         return fmt::format("{:.6g} to {:.6g}{}{}", low, high, unit.empty() ? "" : "\u2009", unit);

@@ -39,7 +39,7 @@ std::string flow_at(const Table& series, double footprint_depth) {
 std::vector<double> speeds_that_count(const std::vector<double>& depth, std::vector<double> speed,
                                       double footprint_depth) {
     for (std::size_t k = 0; k < speed.size(); ++k)
-        if (depth[k] < kSpeedCounts * footprint_depth) speed[k] = 0.0;
+        if (!speed_counts(depth[k], footprint_depth)) speed[k] = 0.0;
     return speed;
 }
 

@@ -16,13 +16,13 @@
 #include "io/gdal_writer.h"
 #include "io/netcdf_series.h"
 #include "io/xdmf_writer.h"
-#include "observe/energy_made.h"
 #include "observe/gauges.h"
 #include "observe/history.h"
 #include "observe/only_fields.h"
 #include "observe/profiles.h"
 #include "observe/sections.h"
 #include "observe/side_by_side.h"
+#include "run/end_remarks.h"
 #include "run/folder/comparison.h"
 #include "run/folder/cutoff.h"
 #include "run/folder/gis_files.h"
@@ -82,26 +82,13 @@ void note_rising_forces(RunRecord& record, const Scene& scene) {
     for (std::string& remark : remarks_on_rising(record.barriers, end)) record.warnings.push_back(std::move(remark));
 }
 
-/// Energy that nothing gave: somewhere what moves is too fast.
-void note_energy_made(RunRecord& record) {
-    constexpr double kMuch = 0.05;  // sound runs have 2 % at most
-    const double made = budget(record.summary.first, record.summary.last).energy_residual,
-                 share = share_made(record.summary.first, record.summary.last);
-    if (share < kMuch) return;
-    record.warnings.push_back(
-        fmt::format("energy: found {:.3g} J that nothing gave, {:.3g} % of what friction took and motion had; expected "
-                    "none: something is too fast, as in pits and bends of one cell; look at the largest speeds, and "
-                    "give a smaller grid.cell",
-                    made, 100.0 * share));
-}
-
 void note_simulation(RunRecord& record, const Scene& scene, const Simulation& simulation) {
     record.extras = simulation.extras();
     if (record.extras.inflow && scene.inflows.size() == 1)
         record.inflow_until = time_of(scene.inflows.front(), record.extras.inflow->expected);
-    for (const std::string& remark : simulation.remarks()) record.warnings.push_back(remark);
+    for (EndRemark& remark : remarks_at_end(simulation, record.summary))
+        record.warnings.push_back(std::move(remark.text));
     note_rising_forces(record, scene);
-    note_energy_made(record);
     if (const Friction* used = simulation.friction()) record.friction = used->parts, record.friction_of_part = true;
     if (!record.extras.water || record.of_water_alone())  // of which the scene's particles tell a part only
         record.release_volume = (record.summary.first.mass - record.summary.first.mass_in) / scene.density;

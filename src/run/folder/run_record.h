@@ -9,6 +9,7 @@
 #include "observe/barriers.h"
 #include "observe/insitu.h"
 #include "observe/sections.h"
+#include "run/end_remarks.h"
 #include "run/folder/barrier_hits.h"
 #include "run/folder/barrier_results.h"
 #include "run/folder/checkpoint.h"
@@ -83,7 +84,7 @@ struct RunRecord {
     std::vector<std::string> files;  ///< that the run made, relative to its folder: run/folder/run_folder.h
 
     /// Whether free water is all that there was.
-    bool of_water_alone() const { return extras.water && !extras.breakage; }
+    bool of_water_alone() const { return frana::of_water_alone(extras); }
 };
 
 /// What the scene and its case file contribute.

@@ -1,0 +1,39 @@
+// Remarks that several runs share.
+#include <fmt/core.h>
+
+#include "catch.h"
+#include "run/end_remarks.h"
+
+using Catch::Contains;
+using frana::RemarkTally;
+
+TEST_CASE("Remarks that differ in numbers only are one, told with the run that it matters most for", "[ensemble]") {
+    RemarkTally tally;
+    tally.add(0, {{"the flow is 5 cells wide (25 m); expected 6", -5.0}, {"late: its 30 m3 did not enter: none came"}});
+    tally.add(1, {{"the flow is 4.2 cells wide (1.2e-05 m); expected 6", -4.2}});
+    tally.add(3, {{"the flow is 5.5 cells wide (-1e+03 m); expected 6", -5.5}});
+    CHECK(tally.sentences(4) ==
+          std::vector<std::string>{
+              "in 3 of 4 runs, worst in sample 1: the flow is 4.2 cells wide (1.2e-05 m); expected 6",
+              "in 1 of 4 runs, sample 0: late: its 30 m3 did not enter: none came"});
+}
+
+TEST_CASE("Of remarks on two things with numbers in their names each is told", "[ensemble]") {
+    RemarkTally tally;
+    tally.add(0, {{"gully 1: its 30 m3 did not enter"}, {"gully 2: its 40 m3 did not enter"}});
+    tally.add(1, {{"gully 2: its 41 m3 did not enter"}});
+    tally.add(2, {{"holes: lost in cell_3"}, {"holes: lost in cell_4"}});
+    const auto all = tally.all();
+    REQUIRE(all.size() == 4);
+    CHECK(all.front().text == "gully 2: its 40 m3 did not enter");
+    CHECK(all.front().runs == 2);
+    CHECK(all.front().sentence(3) == "in 2 of 3 runs, such as sample 0: gully 2: its 40 m3 did not enter");
+}
+
+TEST_CASE("Of very many remarks the first are told, and how many more there are", "[ensemble]") {
+    RemarkTally tally;
+    for (int k = 0; k < 50; ++k) tally.add(k, {{fmt::format("from {} s: began", k)}});
+    CHECK(tally.all().size() == 50);
+    REQUIRE(tally.sentences(50).size() == 21);
+    CHECK_THAT(tally.sentences(50).back(), Contains("30 more remarks"));
+}
