@@ -5,12 +5,14 @@
 #include "analytic_scene.h"
 #include "barrier_ground.h"
 #include "catch.h"
+#include "checks/verify/box_mesh.h"
 #include "coupling/staged_run.h"
 #include "coupling/walled_particles.h"
 #include "observe/memory_archive.h"
 #include "scene/build_scene.h"
 #include "scene/joined_barriers.h"
 #include "slope_case.h"
+#include "terrain/distance_field.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -145,17 +147,31 @@ TEST_CASE("Barriers that overlap, or touch along a side, are named where 3D poin
     CHECK(joined(wall, rectangle(30.2, 10, 31, 14)));  // within
     CHECK(joined(wall, wall));
     CHECK(joined(rectangle(0, 0, 2, 14), rectangle(0, 10, 2, 25)));  // sides on one line
-    CHECK_FALSE(joined(wall, rectangle(28, 10, 29.99, 14)));
-    CHECK_FALSE(joined(wall, rectangle(32, 0, 34, 25)));   // back to back
-    CHECK_FALSE(joined(wall, rectangle(30, 25, 32, 40)));  // end to end
-    CHECK_FALSE(joined(wall, rectangle(32, 25, 34, 40)));  // corner to corner
+    CHECK(joined(wall, rectangle(28, 10, 29.99, 14)));               // a gap that no cell resolves
+    CHECK(joined(wall, rectangle(28, 10, 29.51, 14)));
+    CHECK_FALSE(joined(wall, rectangle(28, 10, 29.5, 14)));  // a cell
+    CHECK(joined(wall, rectangle(32, 0, 34, 25)));           // back to back
+    CHECK(joined(wall, rectangle(30, 25, 32, 40)));          // end to end
+    CHECK(joined(wall, rectangle(32, 25, 34, 40)));          // corner to corner
     std::vector<Barrier> lines(2);  // walls along lines stand 1.5 m thick on their dry side at least
     lines[0].line = {{0, 0}, {0, 10}}, lines[1].line = {{1.4, 0}, {1.4, 10}};
     CHECK(joined_barriers(lines, kCell).size() == 1);
-    lines[1].line = {{1.6, 0}, {1.6, 10}};
+    lines[1].line = {{2.1, 0}, {2.1, 10}};
     CHECK(joined_barriers(lines, kCell).empty());
     lines[1].thickness = 2.0, lines[1].wet_left = false;
     CHECK(joined_barriers(lines, kCell).size() == 1);
+    lines[1] = {};
+    lines[1].line = {{0, 10}, {0, 20}};  // end to end
+    CHECK(joined_barriers(lines, kCell).size() == 1);
+    lines[1].line = {{0, 10}, {-10, 10}};  // a corner
+    CHECK(joined_barriers(lines, kCell).size() == 1);
+    std::vector<Barrier> mesh(2);  // from x = 33 to 35
+    mesh[0].outline = wall;
+    mesh[1].shape = std::make_shared<DistanceField>(verify::box_as_mesh({33, 5, 0}, {35, 9, 4}, kCell));
+    CHECK(joined_barriers(mesh, kCell).empty());
+    CHECK(joined_barriers(mesh, 1.5).size() == 1);
+    mesh[0].outline = rectangle(30, 0, 33.5, 25);
+    CHECK(joined_barriers(mesh, kCell).at(0).apart == 0.0);
 
     FakeGis gis = slope_gis();
     gis.polygons["houses.gpkg"] = village(3, 12, 17);
