@@ -109,6 +109,44 @@ TEST_CASE("A top below all ground of its outline is told, wherever the corners a
     CHECK_FALSE(says(scene_of(with_houses("top = 140\n"), gis), buried));
 }
 
+// Its faces were met through the ground: a barrier 0.5 m below had forces, run-up and what went over it.
+TEST_CASE("A top below all ground of its outline is refused where 3D points would meet it", "[scene][barriers]") {
+    FakeGis gis = slope_gis();
+    gis.polygons["houses.gpkg"] = village(2, 12, 17);  // on ground of 103.75 m and more, the second of 113.75 m
+    const std::string stage = "[[stage]]\nmodel = \"solid_flow\"\nwindow = [1005, 2000, 1100, 2100]\n";
+    const auto problem = [&](const std::string& keys) {
+        return only_problem([&] { scene_of(with_houses(keys, stage), gis); });
+    };
+    CHECK_THAT(problem("top = 100\n"), Contains("barrier.0.top: found 100 m") && Contains("nothing meets it"));
+    CHECK_THAT(problem("top = 108\neach = true\n"), Contains("found 108 m") && Contains("nothing meets house_2"));
+    CHECK(scene_of(with_houses("top = 108\n", stage), gis).barriers.size() == 1);
+}
+
+TEST_CASE("Barriers of less than three cells of a 3D stage are remarked upon, and what is beyond the terrain",
+          "[scene][barriers]") {
+    FakeGis gis = slope_gis();
+    gis.polygons["houses.gpkg"] = rectangle(1020, 1980, 1030, 2060);  // the terrain begins at y = 2000
+    const auto scene = [&](const std::string& keys, const std::string& cell) {
+        return scene_of(with_houses(keys,
+                                    "[[stage]]\nmodel = \"solid_flow\"\nwindow = [1005, 2000, 1100, 2100]\n"
+                                    "cell = " +
+                                        cell + "\n"),
+                        gis);
+    };
+    const std::string low = "house stands 4 m high, 2 cells of the 3D stage; expected 3 or more";
+    CHECK(says(scene("height = 4\n", "2.0"), low));
+    CHECK_FALSE(says(scene("height = 4\n", "1.0"), "m high"));
+    CHECK_FALSE(says(scene_of(with_houses("height = 4\n"), gis), "m high"));  // to particles it is ground
+    // 10 m of one end and 20 m of both sides, of 180 m around it.
+    CHECK(says(scene("height = 4\n", "1.0"), "28 % of the foot of house lie beyond the terrain"));
+    const std::string closed = "1.0\n[boundary]\nsides = \"wall\"";  // across a flume, into its side
+    CHECK_FALSE(says(scene("height = 4\n", closed), "beyond the terrain"));
+    gis.polygons["houses.gpkg"] = rectangle(1020, 1900, 1030, 2060);
+    CHECK(says(scene("height = 4\n", closed), "62 % of the foot of house lie beyond the terrain"));
+    gis.polygons["houses.gpkg"] = rectangle(1020, 2005, 1030, 2060);
+    CHECK_FALSE(says(scene("height = 4\n", "1.0"), "beyond the terrain"));
+}
+
 TEST_CASE("A dam whose top lies below all ground along its line is told", "[scene][barriers]") {
     const FakeGis gis = slope_gis();
     const auto dam = [](const char* top) {
