@@ -306,6 +306,18 @@ TEST_CASE("What an inflow lets in on top of a barrier is told", "[barriers]") {
     CHECK(WalledParticles(scene).remarks().empty());
 }
 
+TEST_CASE("What flows over a buried barrier has not met it", "[barriers]") {
+    Barrier buried = house(80, 56, 8), dam = buried;  // on ground of 76 m down to 73.6 m
+    buried.height = 0.0, buried.top = 70.0;
+    dam.height = 0.0, dam.top = 75.0;  // its upper third is buried
+    WalledParticles under(stream({buried})), alone(stream({})), part(stream({dam}));
+    for (WalledParticles* run : {&under, &alone, &part}) run_to(*run, 8.0);
+    CHECK(std::isnan(under.loads()->barriers[0].run_up));
+    CHECK(under.loads()->barriers[0].overtopped == 0.0);
+    CHECK(under.status().kinetic == alone.status().kinetic);
+    CHECK(part.loads()->barriers[0].overtopped > 0.0);
+}
+
 TEST_CASE("The roof of a neighbour is no run-up", "[barriers]") {
     // The second stands beside the first and is 6 m higher up the slope: what comes over its roof passes the first within two
     // cells, as high as ground there.
