@@ -1,5 +1,7 @@
 // Barriers given as meshes in pictures of 3D points: kept by the run, put together with the pressure on
 // them, seen in the oblique view and in the section.
+#include <vtkCellData.h>
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -10,6 +12,7 @@
 #include "fresh_folder.h"
 #include "io_3d_pictures.h"
 #include "io_figures_scene.h"
+#include "read_polydata.h"
 #include "vtk_io/barrier_mesh.h"
 #include "vtk_io/figures/colours_3d.h"
 #include "vtk_io/figures/figure_3d.h"
@@ -134,6 +137,30 @@ void write_block(const std::filesystem::path& file) {
 }
 
 }  // namespace
+
+// Where ground cuts a square its pressure times the square was more than the force.
+TEST_CASE("Pressures of barriers times their areas are the forces", "[figures][vtk]") {
+    const FreshFolder folder;
+    std::vector<PatchedFace> faces = box();
+    push(faces[0], kPressure, {Vec3(20, 0, 0), Vec3(40, 20, 20)});
+    double force = 0.0;
+    for (std::size_t k = 0; k < faces[0].area.size(); ++k) {
+        faces[0].area[k] *= k % 2 == 0 ? 0.25 : 1.0;
+        force += faces[0].impulse[k][0];
+    }
+    Frame frame;
+    frame.status.time = 1.0;
+    frame.faces = faces;
+    make_barrier_writer(folder.path())->observe(frame);
+    const auto data = test::polydata(folder.path() / "barriers" / "barriers_000000.vtp");
+    vtkDataArray* const areas = data->GetCellData()->GetArray("area");
+    REQUIRE(areas != nullptr);
+    double sum = 0.0;
+    for (vtkIdType k = 0; k < areas->GetNumberOfTuples(); ++k)
+        sum += areas->GetTuple1(k) * data->GetCellData()->GetArray("pressure")->GetTuple1(k);
+    REQUIRE(force > 0.0);
+    CHECK(sum == Approx(force).epsilon(1e-6));  // single precision
+}
 
 TEST_CASE("A run keeps its meshes in map coordinates, turned outwards, by the number of their barrier", "[space]") {
     const FreshFolder folder;

@@ -474,4 +474,5 @@ TEST_CASE("The report has the forces of what leans on a barrier from the start",
     const std::string report = text_of(folder.path() / "run" / "report.md");
     CHECK_THAT(report, Contains("| Barrier | Mean over | Largest horizontal force |"));
     CHECK_THAT(report, Contains("| dam | 0.01 s |"));
+    CHECK_THAT(report, Contains("Moments are about the middle of each outline on the bed: dam (9, 2.5, 10) m."));
 }

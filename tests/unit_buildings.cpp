@@ -5,12 +5,14 @@
 #include "analytic_scene.h"
 #include "barrier_ground.h"
 #include "catch.h"
+#include "checks/verify/box_mesh.h"
 #include "coupling/staged_run.h"
 #include "coupling/walled_particles.h"
 #include "observe/memory_archive.h"
 #include "scene/build_scene.h"
 #include "scene/joined_barriers.h"
 #include "slope_case.h"
+#include "terrain/distance_field.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -107,6 +109,44 @@ TEST_CASE("A top below all ground of its outline is told, wherever the corners a
     CHECK_FALSE(says(scene_of(with_houses("top = 140\n"), gis), buried));
 }
 
+// Its faces were met through the ground: a barrier 0.5 m below had forces, run-up and what went over it.
+TEST_CASE("A top below all ground of its outline is refused where 3D points would meet it", "[scene][barriers]") {
+    FakeGis gis = slope_gis();
+    gis.polygons["houses.gpkg"] = village(2, 12, 17);  // on ground of 103.75 m and more, the second of 113.75 m
+    const std::string stage = "[[stage]]\nmodel = \"solid_flow\"\nwindow = [1005, 2000, 1100, 2100]\n";
+    const auto problem = [&](const std::string& keys) {
+        return only_problem([&] { scene_of(with_houses(keys, stage), gis); });
+    };
+    CHECK_THAT(problem("top = 100\n"), Contains("barrier.0.top: found 100 m") && Contains("nothing meets it"));
+    CHECK_THAT(problem("top = 108\neach = true\n"), Contains("found 108 m") && Contains("nothing meets house_2"));
+    CHECK(scene_of(with_houses("top = 108\n", stage), gis).barriers.size() == 1);
+}
+
+TEST_CASE("Barriers of less than three cells of a 3D stage are remarked upon, and what is beyond the terrain",
+          "[scene][barriers]") {
+    FakeGis gis = slope_gis();
+    gis.polygons["houses.gpkg"] = rectangle(1020, 1980, 1030, 2060);  // the terrain begins at y = 2000
+    const auto scene = [&](const std::string& keys, const std::string& cell) {
+        return scene_of(with_houses(keys,
+                                    "[[stage]]\nmodel = \"solid_flow\"\nwindow = [1005, 2000, 1100, 2100]\n"
+                                    "cell = " +
+                                        cell + "\n"),
+                        gis);
+    };
+    const std::string low = "house stands 4 m high, 2 cells of the 3D stage; expected 3 or more";
+    CHECK(says(scene("height = 4\n", "2.0"), low));
+    CHECK_FALSE(says(scene("height = 4\n", "1.0"), "m high"));
+    CHECK_FALSE(says(scene_of(with_houses("height = 4\n"), gis), "m high"));  // to particles it is ground
+    // 10 m of one end and 20 m of both sides, of 180 m around it.
+    CHECK(says(scene("height = 4\n", "1.0"), "28 % of the foot of house lie beyond the terrain"));
+    const std::string closed = "1.0\n[boundary]\nsides = \"wall\"";  // across a flume, into its side
+    CHECK_FALSE(says(scene("height = 4\n", closed), "beyond the terrain"));
+    gis.polygons["houses.gpkg"] = rectangle(1020, 1900, 1030, 2060);
+    CHECK(says(scene("height = 4\n", closed), "62 % of the foot of house lie beyond the terrain"));
+    gis.polygons["houses.gpkg"] = rectangle(1020, 2005, 1030, 2060);
+    CHECK_FALSE(says(scene("height = 4\n", "1.0"), "beyond the terrain"));
+}
+
 TEST_CASE("A dam whose top lies below all ground along its line is told", "[scene][barriers]") {
     const FakeGis gis = slope_gis();
     const auto dam = [](const char* top) {
@@ -145,17 +185,31 @@ TEST_CASE("Barriers that overlap, or touch along a side, are named where 3D poin
     CHECK(joined(wall, rectangle(30.2, 10, 31, 14)));  // within
     CHECK(joined(wall, wall));
     CHECK(joined(rectangle(0, 0, 2, 14), rectangle(0, 10, 2, 25)));  // sides on one line
-    CHECK_FALSE(joined(wall, rectangle(28, 10, 29.99, 14)));
-    CHECK_FALSE(joined(wall, rectangle(32, 0, 34, 25)));   // back to back
-    CHECK_FALSE(joined(wall, rectangle(30, 25, 32, 40)));  // end to end
-    CHECK_FALSE(joined(wall, rectangle(32, 25, 34, 40)));  // corner to corner
+    CHECK(joined(wall, rectangle(28, 10, 29.99, 14)));               // a gap that no cell resolves
+    CHECK(joined(wall, rectangle(28, 10, 29.51, 14)));
+    CHECK_FALSE(joined(wall, rectangle(28, 10, 29.5, 14)));  // a cell
+    CHECK(joined(wall, rectangle(32, 0, 34, 25)));           // back to back
+    CHECK(joined(wall, rectangle(30, 25, 32, 40)));          // end to end
+    CHECK(joined(wall, rectangle(32, 25, 34, 40)));          // corner to corner
     std::vector<Barrier> lines(2);  // walls along lines stand 1.5 m thick on their dry side at least
     lines[0].line = {{0, 0}, {0, 10}}, lines[1].line = {{1.4, 0}, {1.4, 10}};
     CHECK(joined_barriers(lines, kCell).size() == 1);
-    lines[1].line = {{1.6, 0}, {1.6, 10}};
+    lines[1].line = {{2.1, 0}, {2.1, 10}};
     CHECK(joined_barriers(lines, kCell).empty());
     lines[1].thickness = 2.0, lines[1].wet_left = false;
     CHECK(joined_barriers(lines, kCell).size() == 1);
+    lines[1] = {};
+    lines[1].line = {{0, 10}, {0, 20}};  // end to end
+    CHECK(joined_barriers(lines, kCell).size() == 1);
+    lines[1].line = {{0, 10}, {-10, 10}};  // a corner
+    CHECK(joined_barriers(lines, kCell).size() == 1);
+    std::vector<Barrier> mesh(2);  // from x = 33 to 35
+    mesh[0].outline = wall;
+    mesh[1].shape = std::make_shared<DistanceField>(verify::box_as_mesh({33, 5, 0}, {35, 9, 4}, kCell));
+    CHECK(joined_barriers(mesh, kCell).empty());
+    CHECK(joined_barriers(mesh, 1.5).size() == 1);
+    mesh[0].outline = rectangle(30, 0, 33.5, 25);
+    CHECK(joined_barriers(mesh, kCell).at(0).apart == 0.0);
 
     FakeGis gis = slope_gis();
     gis.polygons["houses.gpkg"] = village(3, 12, 17);
@@ -250,6 +304,18 @@ TEST_CASE("What an inflow lets in on top of a barrier is told", "[barriers]") {
     scene.inflows.pop_back();
     scene.solid.reset();
     CHECK(WalledParticles(scene).remarks().empty());
+}
+
+TEST_CASE("What flows over a buried barrier has not met it", "[barriers]") {
+    Barrier buried = house(80, 56, 8), dam = buried;  // on ground of 76 m down to 73.6 m
+    buried.height = 0.0, buried.top = 70.0;
+    dam.height = 0.0, dam.top = 75.0;  // its upper third is buried
+    WalledParticles under(stream({buried})), alone(stream({})), part(stream({dam}));
+    for (WalledParticles* run : {&under, &alone, &part}) run_to(*run, 8.0);
+    CHECK(std::isnan(under.loads()->barriers[0].run_up));
+    CHECK(under.loads()->barriers[0].overtopped == 0.0);
+    CHECK(under.status().kinetic == alone.status().kinetic);
+    CHECK(part.loads()->barriers[0].overtopped > 0.0);
 }
 
 TEST_CASE("The roof of a neighbour is no run-up", "[barriers]") {

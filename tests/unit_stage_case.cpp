@@ -277,7 +277,7 @@ TEST_CASE("A barrier that stands outside of the stage's window is remarked on, o
     const auto remarks = [](const std::string& window) {
         std::string all;
         for (const std::string& line :
-             scene_of(two + window + "[[barrier]]\noutline = \"wall.geojson\"\nheight = 4\n").log)
+             scene_of(two + window + "[[barrier]]\noutline = \"wall.geojson\"\nheight = 40\n").log)
             all += line;
         return all;
     };

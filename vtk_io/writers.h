@@ -37,7 +37,9 @@ std::unique_ptr<Observer> make_profile_writer(const std::filesystem::path& run_d
 
 /// barriers.pvd and barriers/barriers_NNNNNN.vtp, from the first frame on that has loads of barriers. They hold faces
 /// in squares of about a cell of the 3D model. Cell data `pressure` (mean since the frame before, across the face),
-/// `peak_pressure` (largest of these) [Pa], `impulse_per_area` [Pa s], `barrier`, `face`. Squares of a top's box that
+/// `peak_pressure` (largest of these) [Pa], `impulse_per_area` [Pa s], `area` [m2], `barrier`, `face`. The area
+/// is that which material can reach, where ground or an edge cuts the square: pressure times area is the force across it.
+/// Squares of a top's box that
 /// are not on the top are left out until a force acts on them. Sides may reach far into the ground, and above a top
 /// that follows it. Point data `to_true_height` [m] is to be added to a corner's elevation. It puts the corner between
 /// half a patch below the ground (`bed`) and the barrier's top. A barrier without an entry in `tops` is as high as its

@@ -68,8 +68,7 @@ private:
         vtkNew<vtkPoints> points;
         points->SetDataTypeToDouble();
         vtkNew<vtkCellArray> cells;
-        vtkNew<vtkFloatArray> pressure, peak;
-        vtkNew<vtkFloatArray> impulse;
+        vtkNew<vtkFloatArray> pressure, peak, impulse, areas;
         vtkNew<vtkIntArray> barrier, face_number;
         std::size_t n = 0;
         for (const PatchedFace& face : frame.faces) {
@@ -95,6 +94,7 @@ private:
                     pressure->InsertNextValue(static_cast<float>(mean));
                     peak->InsertNextValue(static_cast<float>(peak_[n]));
                     impulse->InsertNextValue(static_cast<float>(push / area));
+                    areas->InsertNextValue(static_cast<float>(area));
                     barrier->InsertNextValue(static_cast<int>(face.barrier));
                     face_number->InsertNextValue(static_cast<int>(face.face));
                 }
@@ -109,6 +109,7 @@ private:
         add(pressure, "pressure", "Pa");
         add(peak, "peak_pressure", "Pa");
         add(impulse, "impulse_per_area", "Pa s");
+        add(areas, "area", "m2");
         add(barrier, "barrier", "1");
         add(face_number, "face", "1");
         return data;

@@ -121,8 +121,9 @@ private:
     };
     void make_room(std::size_t id);
     void note_inflows(const Scene& scene);
-    /// Whether a place is on top of a barrier.
+    /// Whether a place is on top of a barrier, which stands out of the ground there; of that one.
     bool is_on_top(const Vec2& place) const;
+    bool is_on(std::size_t n, const Vec2& place) const;
     /// Whether a barrier raises the bed at a node.
     bool is_raised(const Vec2& node) const;
     /// Elevation of the top of what stands at a place [m]. It is of the nodes around it that no barrier raises.
@@ -132,6 +133,7 @@ private:
     void sample_at(std::size_t n, const ParticleAt& particle, const Vec2* from);
     std::vector<Surface> surfaces_;             ///< of each barrier
     std::vector<std::pair<Vec3, Vec3>> boxes_;  ///< around each
+    std::vector<Raster> ground_;                ///< that each may be buried in
     BarrierTiles tiles_;
     Index round_ = 0;
     std::vector<Index> near_;  ///< by number of the particle: the last round in which it was near a barrier; 0: none
@@ -174,18 +176,23 @@ public:
 private:
     enum Place : std::uint8_t { unknown, below, over };
     bool is_touched(std::size_t n, const Mpm3d& flow);
+    /// Elevation of a barrier's top at a place, where it stands out of the ground; minus infinity elsewhere [m].
+    double top_above(std::size_t n, const Surface& solid, const Vec2& place) const;
+    void remark_thin_over(std::vector<std::string>& remarks) const;
     std::uint8_t& place_of(std::size_t n, Index id);
     std::vector<int> surfaces_;                      ///< of each barrier
     std::vector<std::pair<Vec3, Vec3>> boxes_;       ///< around each
+    std::vector<Raster> ground_;                     ///< that each may be buried in
     std::vector<double> inside_;                     ///< share of each in the stage's window [1]
     std::vector<std::string> names_;                 ///< of each
     std::vector<std::vector<std::uint8_t>> places_;  ///< per barrier, by number of the point: where it was so far
     std::vector<double> at_start_;                   ///< volume at each as points begin [m3]
-    std::vector<double> due_;  ///< of each: when the first point comes to it, at the speed it came with [s]
+    std::vector<double> due_;         ///< of each: when the first point comes to it, at the speed it came with [s]
+    std::vector<double> over_crest_;  ///< of each: largest depth of points on its top [m]
     BarrierLoads loads_;
-    RunUp reached_;          ///< at one barrier at a time
-    double density_, ramp_;  ///< ramp: of a barrier for particles [m]
-    double placed_ = 0.0;    ///< of points that came to be on top of barriers [m3]
+    RunUp reached_, on_top_;        ///< at one barrier at a time: elevations, and heights over its top
+    double density_, ramp_, cell_;  ///< ramp: of a barrier for particles; cell: of points [m]
+    double placed_ = 0.0;           ///< of points that came to be on top of barriers [m3]
 };
 
 }  // namespace frana

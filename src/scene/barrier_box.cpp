@@ -26,6 +26,42 @@ BarrierBox box_around(const Barrier& barrier, double cell) {
     return box;
 }
 
+namespace {
+
+/// Of the way from one place to another the share within [xmin, ymin, xmax, ymax] [1].
+double share_inside(const Vec2& from, const Vec2& to, const std::array<double, 4>& window) {
+    double first = 0.0, last = 1.0;
+    for (int axis = 0; axis < 2; ++axis) {
+        const auto k = static_cast<std::size_t>(axis);
+        const double way = to[axis] - from[axis];
+        if (way == 0.0) {
+            if (from[axis] < window[k] || from[axis] > window[k + 2]) return 0.0;
+            continue;
+        }
+        const double a = (window[k] - from[axis]) / way, b = (window[k + 2] - from[axis]) / way;
+        first = std::max(first, std::min(a, b)), last = std::min(last, std::max(a, b));
+    }
+    return std::max(0.0, last - first);
+}
+
+}  // namespace
+
+double share_of_foot(const Barrier& barrier, const BarrierBox& box, const std::array<double, 4>& window) {
+    const auto& [low, high] = box;
+    std::vector<std::vector<Vec2>> lines;
+    for (const Polygon& polygon : barrier.outline.parts)
+        for (std::vector<Vec2> ring : polygon.rings) ring.push_back(ring.front()), lines.push_back(std::move(ring));
+    if (!barrier.line.empty()) lines.push_back(barrier.line);
+    if (lines.empty()) lines = {{low, {high.x(), low.y()}, high, {low.x(), high.y()}, low}};
+    double length = 0.0, inside = 0.0;
+    for (const auto& line : lines)
+        for (std::size_t k = 1; k < line.size(); ++k) {
+            const double way = (line[k] - line[k - 1]).norm();
+            length += way, inside += way * share_inside(line[k - 1], line[k], window);
+        }
+    return length > 0.0 ? inside / length : 0.0;
+}
+
 double lowest_ground(const Barrier& barrier, const Raster& bed) {
     double lowest = INFINITY;
     for (const Polygon& polygon : barrier.outline.parts) lowest = std::min(lowest, lowest_ground(polygon, bed));

@@ -1,5 +1,7 @@
 #pragma once
-// The box that structured particles meet in place of a barrier.
+// What barriers are in plan: their foot, and the box that structured particles meet in place of one.
+#include <array>
+
 #include "scene/scene.h"
 
 namespace frana {
@@ -18,6 +20,10 @@ struct BarrierBox {
 BarrierBox bounds_of(const Barrier& barrier);
 /// The same; where it is thinner than kBoxCells it is as wide, about its middle.
 BarrierBox box_around(const Barrier& barrier, double cell);
+
+/// The share of a barrier's foot within x and y of a low corner and of a high one [1]. The foot is its outline, its
+/// line, or of a mesh the outline of `box` around it.
+double share_of_foot(const Barrier& barrier, const BarrierBox& box, const std::array<double, 4>& window);
 
 /// Of all nodes that a barrier's outline stands on, or along its line [m]; infinity where it has no ground.
 double lowest_ground(const Barrier& barrier, const Raster& bed);

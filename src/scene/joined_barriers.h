@@ -1,5 +1,5 @@
 #pragma once
-// Barriers whose faces lie against one another or in one another.
+// Barriers whose faces lie against one another, in one another, or nearer than points resolve.
 #include <string>
 #include <vector>
 
@@ -10,11 +10,11 @@ namespace frana {
 /// Two barriers, by their places in the scene.
 struct JoinedBarriers {
     std::size_t one, other;
+    double apart;  ///< 0: they touch or overlap [m]
 };
 
-/// Those of which one has a corner, or more, in the other or along its side, by their outlines, and walls along a line by
-/// their thickness on cells of the 3D stage [m]. Barriers that meet in corners alone, as walls end to end or back to
-/// back of one length do, are not among them. Nor are meshes.
+/// Those that overlap, touch, or stand less than a cell of the 3D stage apart in plan. They are judged by their outlines,
+/// walls along a line by their thickness on such cells [m], and meshes by what is below their tops.
 std::vector<JoinedBarriers> joined_barriers(const std::vector<Barrier>& barriers, double cell);
 
 /// What 3D points make of them; nothing without any.

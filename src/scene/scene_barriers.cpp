@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/round_number.h"
 #include "scene/barrier_box.h"
 #include "scene/barriers_of_case.h"
 #include "scene/joined_barriers.h"
@@ -69,12 +70,13 @@ public:
         std::vector<Vec2> vertices;
         if (given("mesh") ? !read_mesh(barrier, vertices) : !read_plan(barrier, vertices)) return;
         const auto extent = terrain_extent();
+        const bool is_met = scene_.solid && meets(vertices, window_extent());
         if (!meets(vertices, extent))
             problems_.add(place(), "found no point of it on the terrain",
                           fmt::format("expected the barrier within x {:.10g} to {:.10g}, y {:.10g} to {:.10g}",
                                       extent[0], extent[2], extent[1], extent[3]),
                           "correct the coordinates or the CRS, or widen terrain.window");
-        else if (scene_.solid && !meets(vertices, window_extent()))
+        else if (scene_.solid && !is_met)
             scene_.log.push_back(fmt::format("{}: stands outside of stage.window: 3D points do not meet it", place()));
         barrier.wet_left = case_.word(prefix_ + "wet") == "left";
         if (given("thickness")) barrier.thickness = case_.number(prefix_ + "thickness");
@@ -86,14 +88,17 @@ public:
                           "correct it; an elevation is given by top");
         barrier.friction = case_.number(prefix_ + "friction");
         barrier.stuck = case_.flag(prefix_ + "stuck");
-        remark_buried(barrier);
+        if (is_met) remark_beyond(barrier, vertices);
         barrier.windows = windows();
         if (case_.word("material.structure.law") == "none") {  // structured particles meet boxes
             remark_thin(barrier.outline);
             remark_thin_wall(barrier);
         }
-        if (!case_.flag(prefix_ + "each")) return scene_.barriers.push_back(std::move(barrier));
-        add_each(barrier);
+        const bool each = case_.flag(prefix_ + "each");
+        if (!each || !scene_.solid) judge_buried(barrier);
+        if (each) return add_each(barrier);
+        if (is_met) remark_low(barrier);
+        scene_.barriers.push_back(std::move(barrier));
     }
 
 private:
@@ -101,12 +106,49 @@ private:
     std::array<double, 4> terrain_extent() const {
         return (scene_.wider ? scene_.wider->grid : scene_.bed.geometry).pixel_extent();
     }
-    /// A top that no ground of its outline is below. Erodible ground may free it later.
-    void remark_buried(const Barrier& barrier) {
+    /// A top that no ground of its outline is below. Erodible ground may free it later. 3D points would meet its faces
+    /// through the ground, and it is refused as a mesh is.
+    void judge_buried(const Barrier& barrier) {
         if (scene_.erodible || !is_buried(barrier, scene_.bed)) return;
+        const std::string at = case_.place(prefix_ + "top"), found = fmt::format("found {:.6g} m", *barrier.top),
+                          expected = fmt::format("expected more than the ground's {:.6g} m: nothing meets {}",
+                                                 lowest_ground(barrier, scene_.bed),
+                                                 case_.flag(prefix_ + "each") && scene_.solid ? barrier.name : "it");
+        if (scene_.solid)
+            problems_.add(at, found, expected, "correct it, which is an elevation, or remove the barrier");
+        else
+            scene_.log.push_back(fmt::format("{}: {}; {}", at, found, expected));
+    }
+
+    /// How high it stands above the lowest ground below it; not a number where it has none [m].
+    double height_of(const Barrier& barrier) const {
+        if (barrier.shape) return mesh_height_;
+        return barrier.top ? *barrier.top - lowest_ground(barrier, scene_.bed) : barrier.height;
+    }
+
+    /// Nodes carry what presses on a face to a cell around it. Of a low barrier little of it is left for the top.
+    void remark_low(const Barrier& barrier) {
+        constexpr double kCells = 3.0;
+        const double cell = scene_.solid->cell, height = height_of(barrier);
+        if (!(height > 0.0) || height >= kCells * cell || !std::isfinite(height)) return;
         scene_.log.push_back(
-            fmt::format("{}: found {:.6g} m; expected more than the ground's {:.6g} m: nothing meets it",
-                        case_.place(prefix_ + "top"), *barrier.top, lowest_ground(barrier, scene_.bed)));
+            fmt::format("{}: {} stands {:.3g} m high, {:.2g} cells of the 3D stage; expected {:g} or more, or the "
+                        "vertical force on "
+                        "its top, the moment of that, and what goes over it are too small; stage.cell = {:g} would do",
+                        place(), barrier.name, height, height / cell, kCells, round_number_below(height / kCells)));
+    }
+
+    /// What is beyond the terrain takes no load. Where its sides are walls a barrier across it is drawn into them.
+    void remark_beyond(const Barrier& barrier, const std::vector<Vec2>& vertices) {
+        BarrierBox box{vertices.front(), vertices.front()};
+        for (const Vec2& p : vertices) box.low = box.low.cwiseMin(p), box.high = box.high.cwiseMax(p);
+        const double beyond = 1.0 - share_of_foot(barrier, box, terrain_extent());
+        if (beyond > (case_.word("boundary.sides") == "wall" ? 0.5 : 0.01))
+            scene_.log.push_back(
+                fmt::format("{}: {:.0f} % of the foot of {} lie beyond the terrain, where nothing meets it; forces and "
+                            "moments are those on the rest; expected terrain under all of it, if they are asked for on "
+                            "the whole",
+                            place(), 100.0 * beyond, barrier.name));
     }
 
     bool given(const char* name) const { return case_.given(prefix_ + name); }
@@ -149,6 +191,8 @@ private:
             one.outline.source = barrier.outline.source;
             one.top = barrier.top, one.height = heights_.empty() ? barrier.height : heights_[n];
             one.stuck = barrier.stuck, one.friction = barrier.friction, one.windows = barrier.windows;
+            if (scene_.solid) judge_buried(one);
+            if (scene_.solid && meets(corners, window_extent())) remark_low(one);
             scene_.barriers.push_back(std::move(one));
         }
         if (beyond > 0)
@@ -238,7 +282,7 @@ private:
     }
 
     /// Refuses what lies wholly under the ground below it, or above: an origin without its elevation.
-    void require_on_ground(const MeshField& mesh) const {
+    void require_on_ground(const MeshField& mesh) {
         const GridGeometry& g = scene_.bed.geometry;
         double low = INFINITY, high = -INFINITY;
         for (Index j = 0; j < g.ny; ++j)
@@ -248,6 +292,7 @@ private:
                                   y >= mesh.low.y() - g.cell && y <= mesh.high.y() + g.cell;
                 if (near && std::isfinite(z)) low = std::min(low, z), high = std::max(high, z);
             }
+        mesh_height_ = mesh.high.z() - low;
         if (low > high || (mesh.high.z() > low && mesh.low.z() < high + g.cell)) return;
         throw UserError(
             fmt::format("found it from {:.6g} to {:.6g} m, the ground there from {:.6g} to {:.6g} m; expected a "
@@ -262,6 +307,7 @@ private:
     Problems& problems_;
     std::string prefix_;
     std::vector<double> heights_;  ///< of the outline's polygons, where the file gives them [m]
+    double mesh_height_ = 0.0;     ///< of a mesh, above the lowest ground below it [m]
 };
 
 }  // namespace

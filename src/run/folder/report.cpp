@@ -332,10 +332,11 @@ Vec3 without_round_off(const Vec3& v) {
 
 /// The largest means of the forces on those barriers; empty where no forces are known.
 std::string mean_forces(const RunRecord& r, const std::vector<std::size_t>& shown) {
-    std::string rows;
+    std::string rows, abouts;
     for (const std::size_t n : shown) {
         const BarrierSummary& b = r.barriers[n];
         if (b.blur <= 0.0) continue;
+        const std::size_t before = rows.size();
         if (b.peak_force > 0.0)
             rows += fmt::format("| {} | {:.4g} s, as in `barriers.csv` | {:.4g} N | {:.4g} s | - | - |\n", b.name,
                                 b.blur, b.peak_force, b.peak_force_time);
@@ -346,11 +347,14 @@ std::string mean_forces(const RunRecord& r, const std::vector<std::size_t>& show
                 "| {} | {:.4g} s | {:.4g} N | {:.4g} s | {:.4g}, {:.4g}, {:.4g} N | {:.4g}, {:.4g}, {:.4g} N m |\n",
                 b.name, m.window, m.largest, m.time, force[0], force[1], force[2], moment[0], moment[1], moment[2]);
         }
+        if (rows.size() > before)
+            abouts += fmt::format("{}{} ({:.10g}, {:.10g}, {:.6g})", abouts.empty() ? "" : ", ", b.name, b.about[0],
+                                  b.about[1], b.about[2]);
     }
     if (rows.empty()) return "";
     return "\n| Barrier | Mean over | Largest horizontal force | Up to | Force x, y, z | Moment x, y, z |\n"
            "|---|---|---|---|---|---|\n" +
-           rows;
+           rows + "\nMoments are about the middle of each outline on the bed: " + abouts + " m.\n";
 }
 
 std::string barriers(const RunRecord& r) {
