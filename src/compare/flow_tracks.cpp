@@ -143,7 +143,7 @@ Polyline FlowTracks::track_from(std::size_t start) const {
 RunoutPath runout_path(const Raster& bed, const FlowTracks& tracks, std::size_t start, const Vec2& from) {
     RunoutPath path;
     path.line = steepest_path(bed, from);
-    path.front = from;
+    path.start = start, path.front = from;
     const Polyline track = tracks.track_from(start);
     const std::optional<Index> part = tracks.part_at(from);
     if (track.empty() || !part) return path;

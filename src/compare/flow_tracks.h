@@ -37,9 +37,10 @@ private:
 /// The way that a runout is measured along from a start: the steepest path, or that of the flow where it left the
 /// steepest path within the first half of its way. Then it goes on along the steepest path from the flow's front.
 struct RunoutPath {
-    Polyline line;         ///< empty: none is known
-    bool of_flow = false;  ///< the flow left the steepest path
-    Vec2 front{0, 0};      ///< the farthest place of the flow, or the start
+    Polyline line;          ///< empty: none is known
+    bool of_flow = false;   ///< the flow left the steepest path
+    std::size_t start = 0;  ///< its number
+    Vec2 front{0, 0};       ///< the farthest place of the flow, or the start
 };
 RunoutPath runout_path(const Raster& bed, const FlowTracks& tracks, std::size_t start, const Vec2& from);
 

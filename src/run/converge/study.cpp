@@ -82,7 +82,7 @@ Path path_of(const RunFiles& finest, const Raster& bed, double limit, std::vecto
     const Raster covered = finest.covered();
     const std::vector<RunoutPath> paths = runout_paths(bed, covered, limit, FlowTracks(covered, limit, starts), starts);
     for (std::size_t n = 1; n < paths.size(); ++n) path.others.push_back(paths[n].line);
-    if (!paths.empty() && paths.front().line.front() == starts.front()) {
+    if (!paths.empty() && paths.front().start == 0) {
         path.line = paths.front().line;
         if (paths.front().of_flow) remarks.push_back("on the finest cell " + remark_on_track(paths.front()));
         if (paths.size() > 1)
