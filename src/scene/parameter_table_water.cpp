@@ -10,10 +10,11 @@ namespace {
 void add_water_sides(Table& table) {
     using namespace rows;
     for (const char* side : {"west", "east", "south", "north"}) {
-        Parameter parameter =
-            make("", Kind::number_or_choice, "m",
-                 "that side of the terrain for free water: wall; free: water leaves as it flows, and none comes in; or "
-                 "the elevation of a lake beyond, which holds the water there and flows in where it stands higher");
+        Parameter parameter = make(
+            "", Kind::number_or_choice, "m",
+            "that side of the terrain for free water: wall; free: as if the channel went on, so still water on level "
+            "ground stays; or the elevation of a lake beyond, whose energy has what flows in; below the ground "
+            "water falls out");
         parameter.key = std::string("water.sides.") + side;
         parameter.range = any_number;
         parameter.choices = {"wall", "free"};

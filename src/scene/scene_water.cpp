@@ -136,24 +136,29 @@ public:
                 const double deep = depth(i, j);
                 if (!(deep > 0.0)) continue;
                 depths += deep, nodes += 1.0, deepest = std::max(deepest, deep);
-                edges +=
-                    goes_on(0, i == 0) + goes_on(1, i == g.nx - 1) + goes_on(2, j == 0) + goes_on(3, j == g.ny - 1);
+                edges += at(Is::as_sides, i, j), frees += at(Is::free, i, j);
                 for (const auto& [di, dj] : {std::pair<Index, Index>{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
                     cut += flows_out(i + di, j + dj) ? 1.0 : 0.0;
             }
     }
     double lowest = INFINITY, deepest = 0.0;  ///< ground where it may be; its depth [m]
     double depths = 0.0, nodes = 0.0;         ///< sum over its nodes [m]; their number
-    double edges = 0.0,
-           cut = 0.0;  ///< their edges at sides without keys; those beyond which there is lower ground without it
+    double edges = 0.0, frees = 0.0;          ///< their edges at sides without keys, at free ones
+    double cut = 0.0;                         ///< those beyond which there is lower ground without it
 
 private:
+    using Is = WaterPhase::Side::Is;
     bool may_be(Index i, Index j) const {
         return water_.lake.empty() || water_.lake[static_cast<std::size_t>(j * bed_.geometry.nx + i)];
     }
     double depth(Index i, Index j) const { return may_be(i, j) ? *water_.level - bed_.at(i, j) : 0.0; }
-    double goes_on(std::size_t side, bool at_side) const {
-        return at_side && water_.sides[side].is == WaterPhase::Side::Is::as_sides ? 1.0 : 0.0;
+    /// Edges of a node at sides of a kind.
+    double at(Is is, Index i, Index j) const {
+        const GridGeometry& g = bed_.geometry;
+        const bool touches[] = {i == 0, i == g.nx - 1, j == 0, j == g.ny - 1};
+        double count = 0.0;
+        for (std::size_t side = 0; side < 4; ++side) count += touches[side] && water_.sides[side].is == is ? 1.0 : 0.0;
+        return count;
     }
     bool flows_out(Index i, Index j) const {
         const GridGeometry& g = bed_.geometry;
@@ -178,9 +183,14 @@ void remark_on_lake(const CaseFile& file, const WaterPhase& water, Scene& scene)
     }
     std::string text = fmt::format("{}: {:.6g} m floods {:.4g} m2 of the ground with {:.4g} m3, {:.4g} m deep at most",
                                    place, level, lake.nodes * cell * cell, lake.depths * cell * cell, lake.deepest);
-    if (lake.edges > 0.0 && scene.sides == Sides::open && water.lake.empty())
-        text += fmt::format("; it meets open sides over {:.4g} m, beyond which it is held at that level",
-                            lake.edges * cell);
+    if (lake.edges > 0.0 && scene.sides == Sides::open)
+        text += fmt::format("; it meets open sides over {:.4g} m, {}", lake.edges * cell,
+                            water.lake.empty() ? "beyond which it is held at that level" : "where it falls out");
+    if (lake.frees > 0.0)
+        text += fmt::format(
+            "; it meets free sides over {:.4g} m, where still water on level ground stays; an elevation "
+            "below the ground lets it fall out",
+            lake.frees * cell);
     if (lake.cut > 0.0)
         text += fmt::format("; its outline cuts it off over {:.4g} m, where it breaks out at the start as behind a dam",
                             lake.cut * cell);
@@ -223,11 +233,11 @@ void remark_on_level(const std::string& place, std::size_t side, double level, S
                                      : scene.bed.at(n, g.ny - 1);
         lowest = std::min(lowest, z), nodes += z < level ? 1.0 : 0.0;
     }
-    scene.log.push_back(
-        nodes > 0.0 ? fmt::format("{}: {:.6g} m stands over {:.4g} m of that side, {:.4g} m deep at most", place, level,
-                                  nodes * g.cell, level - lowest)
-                    : fmt::format("{}: found {:.6g} m, below all ground there, {:.6g} m; water leaves as by \"free\"",
-                                  place, level, lowest));
+    scene.log.push_back(nodes > 0.0
+                            ? fmt::format("{}: {:.6g} m stands over {:.4g} m of that side, {:.4g} m deep at most",
+                                          place, level, nodes * g.cell, level - lowest)
+                            : fmt::format("{}: found {:.6g} m, below all ground there, {:.6g} m; water falls out",
+                                          place, level, lowest));
 }
 
 std::array<WaterPhase::Side, 4> read_sides(const CaseFile& file, Scene& scene) {

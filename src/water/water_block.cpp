@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "water/held_side.h"
 
 namespace frana {
 namespace {
@@ -13,26 +16,30 @@ struct Side {
     double outward;      ///< 1 or -1
 };
 
-/// Speed out of the grid of the water beyond a side that holds a level, `depth` deep there [m/s]. The invariant u + 2 c
-/// that comes out of the grid gives it. So the side's depth is that of the level. None comes in faster than from rest.
-double speed_beyond(const WaterBlock& block, const Side& side, Index inside, double depth) {
-    const double g = block.normal_gravity[inside];
-    return std::max(
-        0.0, side.outward * side.normal[inside] + 2.0 * (std::sqrt(g * block.depth[inside]) - std::sqrt(g * depth)));
-}
+/// Speed of the last cell's water out of the grid [m/s].
+double outwards(const Side& side, Index inside) { return side.outward * side.normal[inside]; }
 
-/// A lake at its level, over ground as high as that of the last cell. One that goes on is at rest: waves that reach it go on.
-/// One that is held takes what flows out of the grid, and its surface stays.
-void lake_beyond(const WaterBody& body, WaterBlock& block, const Side& side, Index inside, Index step, Index room) {
-    const double level = body.lakes[side.number], depth = level - (block.surface[inside] - block.depth[inside]);
-    const double out = body.sides[side.number] == WaterSide::level ? speed_beyond(block, side, inside, depth) : 0.0;
+/// Even water beyond a side, over ground as high as that of the last cell. What comes in goes straight.
+void fill_beyond(WaterBlock& block, const Side& side, const AtSide& has, Index inside, Index step, Index room) {
     double* const along = side.normal == block.u ? block.v : block.u;
+    const double surface = (block.surface[inside] - block.depth[inside]) + has.depth;
     for (Index n = 1; n <= std::min(kHalo, room); ++n) {
         const Index to = inside - n * step;
-        block.depth[to] = depth, block.surface[to] = level;
-        side.normal[to] = side.outward * out, along[to] = out > 0.0 ? along[inside] : 0.0;
+        block.depth[to] = has.depth, block.surface[to] = surface;
+        side.normal[to] = side.outward * has.out, along[to] = has.out > 0.0 ? along[inside] : 0.0;
         block.normal_gravity[to] = block.normal_gravity[inside];
     }
+}
+
+/// A lake at its level. One that goes on is at rest: waves that reach it go on. One that is held takes what flows out of the
+/// grid, and what flows in has its energy.
+void lake_beyond(const WaterBody& body, WaterBlock& block, const Side& side, Index inside, Index step, Index room) {
+    const double depth = body.lakes[side.number] - (block.surface[inside] - block.depth[inside]);
+    const bool held = body.sides[side.number] == WaterSide::level;
+    fill_beyond(block, side,
+                held ? at_side(block.depth[inside], outwards(side, inside), depth, block.normal_gravity[inside])
+                     : AtSide{depth, 0.0},
+                inside, step, room);
 }
 
 /// Water that leaves by a free side has the depth and the speed of the cell before the last one. In steady flow nothing
@@ -52,14 +59,31 @@ void even_out(WaterBlock& block, const Side& side, Index inside, Index step, Ind
     }
 }
 
+/// Water at a side where the ground ends, or with lower water beyond. Slower than waves it falls there, from its critical
+/// depth. Nothing where that is less than its fall over ground that goes on: then it leaves as it flows. With a bed law
+/// friction holds what stands, and only what moves leaves. `fall`: of the ground over the last cell [m].
+std::optional<AtSide> over_the_edge(const WaterBody& body, const WaterBlock& block, const Side& side, Index inside,
+                                    double fall) {
+    const WaterSide is = body.sides[side.number];
+    if (body.bed_laws || (is != WaterSide::open && is != WaterSide::level)) return {};
+    const double h = block.depth[inside], out = outwards(side, inside);
+    const AtSide edge = at_side(h, out, 0.0, block.normal_gravity[inside]);
+    if (out > 0.0 && h - edge.depth <= fall) return {};
+    return edge;
+}
+
 /// What lies beyond a side, from the cells before it: `inside` is the last cell, `step` leads into the grid.
-/// A wall is a mirror, and so is an open side that water does not leave by. Where it does, the ground goes on
-/// as it falls, or level, with water as deep and as fast. `room`: cells the block has.
+/// A wall is a mirror, and so is a side that water does not leave by. Where it does, the ground goes on
+/// as it falls, or level, with water as deep and as fast, or the water falls. `room`: cells the block has.
 void beyond(const WaterBody& body, WaterBlock& block, const Side& side, Index inside, Index step, Index room) {
     if (meets_lake(body, block, inside, side.number)) return lake_beyond(body, block, side, inside, step, room);
     const auto ground = [&](Index k) { return block.surface[k] - block.depth[k]; };
     const double fall = std::max(0.0, ground(inside + step) - ground(inside));
-    const bool leaves = body.sides[side.number] != WaterSide::wall && side.outward * side.normal[inside] > 0.0;
+    if (const auto edge = over_the_edge(body, block, side, inside, fall))
+        return fill_beyond(block, side, *edge, inside, step, room);
+    const double out = outwards(side, inside);
+    const bool free = body.sides[side.number] == WaterSide::free,
+               leaves = body.sides[side.number] != WaterSide::wall && (out > 0.0 || (free && out == 0.0 && fall > 0.0));
     for (Index n = 1; n <= std::min(kHalo, room); ++n) {
         const Index to = inside - n * step, from = leaves ? inside : inside + (n - 1) * step;
         block.depth[to] = block.depth[from], block.u[to] = block.u[from], block.v[to] = block.v[from];
@@ -69,7 +93,7 @@ void beyond(const WaterBody& body, WaterBlock& block, const Side& side, Index in
         else
             side.normal[to] = -side.normal[to];
     }
-    if (leaves && body.sides[side.number] == WaterSide::free) even_out(block, side, inside, step, room);
+    if (leaves && free) even_out(block, side, inside, step, room);
 }
 
 void load_row(const WaterBody& body, const WaterFields& from, const TilePart& part, Index b, WaterBlock& block) {

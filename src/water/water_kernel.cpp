@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "water/face_flux.h"
+#include "water/held_side.h"
 #include "water/water_block.h"
 #include "water/water_brake.h"
 
@@ -526,10 +527,27 @@ std::uint16_t near_of(Index i, Index j) {
     return static_cast<std::uint16_t>(bit(0, 0) | bit(di, 0) | bit(0, dj) | bit(di, dj));
 }
 
+/// Speed of the waves that come in from the lakes beyond the sides that a cell is at [m/s]. Those of water that flows in
+/// run on it.
+double waves_of_lakes(const WaterBody& body, Index k, Index i, Index j, const Water& w) {
+    const double g = body.normal_gravity[k], per = w.h > body.film ? 1.0 / w.h : 0.0;
+    double fastest = 0.0;
+    const auto from = [&](std::size_t side, bool here, double out) {
+        if (!here || body.sides[side] == WaterSide::wall) return;
+        const double lake = body.lakes[side] - body.bed[k];
+        if (!(lake > 0.0)) return;
+        const bool held = body.sides[side] == WaterSide::level;
+        const AtSide comes = held ? at_side(per > 0.0 ? w.h : 0.0, per * out, lake, g) : AtSide{lake, 0.0};
+        fastest = std::max({fastest, std::sqrt(g * lake), std::sqrt(g * comes.depth) - comes.out});
+    };
+    from(0, i == 0, -w.qx), from(1, i == body.grid.nx() - 1, w.qx);
+    from(2, j == 0, -w.qy), from(3, j == body.grid.ny() - 1, w.qy);
+    return fastest;
+}
+
 /// Counts the cell at node (i, j), stored at k.
 void count(const WaterBody& body, Index k, Index i, Index j, const Water& w, WaterSums& sums) {
-    if (const double lake = body.highest_lake(i, j); body.bed[k] < lake)  // its waves come in
-        sums.signal = std::max(sums.signal, std::sqrt(body.normal_gravity[k] * (lake - body.bed[k])));
+    sums.signal = std::max(sums.signal, waves_of_lakes(body, k, i, j, w));
     if (!(w.h > 0.0)) {
         if (w.h != 0.0) sums.bad = k;  // negative, or not a number
         return;
