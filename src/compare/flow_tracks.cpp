@@ -93,7 +93,9 @@ void FlowTracks::find_ways(const std::vector<Vec2>& starts) {
         next.emplace(0.0, *node);
     }
     while (!next.empty()) {
-        const auto [length, node] = next.top();
+        const Way top = next.top();
+        const double length = top.first;
+        const Index node = top.second;
         next.pop();
         const auto k = static_cast<std::size_t>(node);
         if (length > way_[k]) continue;
