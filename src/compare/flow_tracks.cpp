@@ -182,14 +182,13 @@ std::vector<RunoutPath> runout_paths(const Raster& bed, const Raster& depth, dou
 std::string remark_on_track(const RunoutPath& path) {
     return fmt::format(
         "the flow from {:.10g}, {:.10g} left the steepest path before half of its way, so its runout is along the "
-        "track "
-        "that it covered, and on by the steepest path from its front at {:.10g}, {:.10g}",
+        "track that it covered, and on by the steepest path from its front at {:.10g}, {:.10g}",
         path.line.front().x(), path.line.front().y(), path.front.x(), path.front.y());
 }
 
 std::vector<Rings> rings_of_parts(const std::vector<Polyline>& paths, const FlowTracks& tracks, const Rings& outline) {
-    std::vector<std::optional<Index>> parts;
-    for (const Polyline& path : paths) parts.push_back(tracks.part_at(path.front()));
+    std::vector<std::optional<Index>> parts(paths.size());
+    for (std::size_t n = 0; n < paths.size(); ++n) parts[n] = tracks.part_at(paths[n].front());
     std::vector<Rings> rings(paths.size());
     for (const auto& ring : outline) {
         const std::optional<Index> part = tracks.part_at(ring.front());
@@ -204,14 +203,14 @@ std::vector<Rings> rings_of_polygons(const std::vector<Polyline>& paths, const P
     const auto starts_in = [&](const Polygon& polygon, std::size_t n) {
         return distance_to(polygon, paths[n].front()) <= step;
     };
-    std::vector<char> starts_in_any;
+    std::vector<char> starts_in_any(paths.size());
     for (std::size_t n = 0; n < paths.size(); ++n)
-        starts_in_any.push_back(std::any_of(polygons.parts.begin(), polygons.parts.end(),
-                                            [&](const Polygon& polygon) { return starts_in(polygon, n); }));
+        starts_in_any[n] = std::any_of(polygons.parts.begin(), polygons.parts.end(),
+                                       [&](const Polygon& polygon) { return starts_in(polygon, n); });
     std::vector<Rings> rings(paths.size());
     for (const Polygon& polygon : polygons.parts) {
-        std::vector<char> starts;
-        for (std::size_t n = 0; n < paths.size(); ++n) starts.push_back(starts_in(polygon, n));
+        std::vector<char> starts(paths.size());
+        for (std::size_t n = 0; n < paths.size(); ++n) starts[n] = starts_in(polygon, n);
         const bool is_nobodys = std::find(starts.begin(), starts.end(), char{1}) == starts.end();
         const Rings of_it = rings_of(Polygons{{polygon}, "", ""});
         for (std::size_t n = 0; n < paths.size(); ++n)

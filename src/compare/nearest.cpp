@@ -9,6 +9,7 @@
 #include <boost/geometry/geometries/segment.hpp>
 #include <boost/geometry/index/rtree.hpp>
 #include <boost/geometry/strategies/strategies.hpp>
+#include <limits>
 
 #include "base/error.h"
 
@@ -25,6 +26,7 @@ using Point = boost::geometry::model::d2::point_xy<double>;
 }  // namespace
 
 double distance_to(const Polygon& polygon, const Vec2& p) {
+    if (polygon.rings.empty()) return std::numeric_limits<double>::infinity();
     boost::geometry::model::polygon<Point> shape;
     shape.inners().resize(polygon.rings.size() - 1);
     for (std::size_t n = 0; n < polygon.rings.size(); ++n)

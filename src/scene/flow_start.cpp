@@ -68,6 +68,7 @@ std::vector<Vec2> middles_in_time(const Scene& scene) {
         if (late.at && late.seeds.count() > 0) all.emplace_back(*late.at, middle_of(late.seeds));
     std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<Vec2> middles;
+    middles.reserve(all.size());
     for (const auto& [begin, middle] : all) middles.push_back(middle);
     return middles;
 }
