@@ -120,6 +120,28 @@ TEST_CASE("A stage that ends while water runs against a wall keeps its mass and 
 
 // On level ground to the few percent that are left. In a valley whose sides rise by half the depth from cell to cell it
 // lies level on three of them: 1 + 2/3.
+// All of a cell's load went on in the first step, to the last bit. What came back listed the cell twice, so that it gave
+// more than it had: masses grew to 1e307, and the run crashed (frana stress, staged, seed 20261162, scene 702).
+TEST_CASE("A cell that has given all of its load goes on once when some comes back", "[stages][barrier]") {
+    const GridGeometry grid{21, 21, 0.0, 0.0, 1.0};
+    Displaced displaced(grid, 1000.0, [](Index) { return 0.0; });
+    std::vector<DepartedPoint> own;
+    for (Index k = 0; k < grid.size(); ++k) {
+        own.push_back(point_at(grid.x(k % 21), grid.y(k / 21), 0.5, 1000.0, 0.0));
+        displaced.stay(own.back(), k, 0.0);
+    }
+    displaced.move(point_at(10.0, 10.0, 0.5, 1000.0, 0.0), 1.0, 10 * 21 + 10);
+    displaced.spread();
+    double mass = 0.0, most = 0.0;
+    for (Index k = 0; k < grid.size(); ++k) {
+        const double now = displaced.joined(own[static_cast<std::size_t>(k)], k).mass;
+        CHECK(now >= 1000.0);
+        mass += now, most = std::max(most, now);
+    }
+    CHECK(mass == Approx(442e3).epsilon(1e-13));
+    CHECK(most <= 1041.0);
+}
+
 TEST_CASE("What is moved to a cell spreads on level ground, as water in a valley, and loses nothing",
           "[stages][barrier]") {
     const GridGeometry grid{60, 1, 0.0, 0.0, 1.0};

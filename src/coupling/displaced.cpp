@@ -101,7 +101,7 @@ double Displaced::pass(std::size_t from, double least, std::vector<Index>& loade
         if (!(rise > least)) continue;
         most = std::max(most, rise);
         const double share = rise * std::min(giver.per_height, taker.per_height) / giver.load.mass;
-        if (taker.load.mass == 0.0 && taker.change.mass == 0.0) loaded.push_back(number);
+        if (!std::exchange(taker.is_listed, true)) loaded.push_back(number);
         giver.change.add(giver.load, -share), taker.change.add(giver.load, share);
     }
     return cells_[from].is_high() ? most : 0.0;
@@ -112,7 +112,7 @@ int Displaced::spread() {
     double first = 0.0;
     for (std::size_t n = 0; n < cells_.size(); ++n) {
         if (!(cells_[n].load.mass > 0.0)) continue;
-        loaded.push_back(static_cast<Index>(n));
+        loaded.push_back(static_cast<Index>(n)), cells_[n].is_listed = true;
         first = std::max(first, cells_[n].rise);
     }
     int step = 0;

@@ -56,6 +56,7 @@ private:
         Load load;
         Load change;                      ///< in a step
         double rise = 0.0;                ///< of the load [m]
+        bool is_listed = false;           ///< among those that spread, also when all of it went on
         std::array<Index, 4> adjacent{};  ///< nodes, or -1
 
         bool is_high() const;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/compensated_sum.h"
 #include "mpm/domain.h"
 #include "mpm/stencil.h"
 #include "shallow/surface.h"
@@ -209,7 +210,9 @@ MassFit fit_masses(Flow& flow, double level) {
         if (gather_rows(true, level - 1e-13 * std::max(1.0, std::abs(level))) == 0) break;
     }
     fit.rows = static_cast<Index>(rows.size());
-    fit.volume_change = Numbers::Map(flow.particles.mass.data(), flow.particles.count()).sum() / start.sum() - 1.0;
+    CompensatedSum before, after;  // Eigen's sums depend on where an array begins
+    for (Index p = 0; p < start.size(); ++p) before.add(start[p]), after.add(flow.particles.mass[p]);
+    fit.volume_change = after.value() / before.value() - 1.0;
     return fit;
 }
 
