@@ -74,8 +74,7 @@ private:
                 remark("{}: the path is drawn uphill and was turned round", survey_.path_source);
             }
         } else if (run_.bed && run_.arrival_time) {
-            constexpr std::size_t most = 9;
-            starts_ = release_middles(*run_.arrival_time, most);
+            starts_ = release_middles(*run_.arrival_time);
             released_ = !starts_.empty();
             starts_.insert(starts_.end(), run_.starts.begin(), run_.starts.end());
             if (!starts_.empty()) result_.path = steepest_path(*run_.bed, starts_.front());
@@ -191,8 +190,9 @@ private:
     /// Beside the end of the path nothing tells how far a flow runs.
     void doubt_end() {
         if (result_.path.empty()) return;
-        const bool survey = turns_off(surveyed_front_, noticeable * result_.cell);
-        const std::string turn = remark_on_turn(survey ? surveyed_front_ : simulated_front_, noticeable * result_.cell);
+        const bool survey = turns_off(surveyed_front_, kNoticeable * result_.cell);
+        const std::string turn =
+            remark_on_turn(survey ? surveyed_front_ : simulated_front_, kNoticeable * result_.cell);
         if (!turn.empty())
             remark("{}, so the runout {} ends with the path; give the whole track of the flow with --path", turn,
                    survey ? "of the survey" : "that was simulated");
@@ -206,18 +206,17 @@ private:
             runouts +=
                 fmt::format("{}{} / {} from {:.10g}, {:.10g}", runouts.empty() ? "" : "; ", metres(other.simulated),
                             metres(other.surveyed), other.path.front().x(), other.path.front().y());
-        remark(
-            "flows from several places do not meet, or went down different valleys; the runout is that from {:.10g}, "
-            "{:.10g}. A surveyed polygon counts for the paths that start in it. Runouts of the others, simulated / "
-            "surveyed: {}",
-            result_.path.front().x(), result_.path.front().y(), runouts);
+        result_.remarks.push_back(
+            fmt::format("{}. A surveyed polygon counts for the paths that start in it. Runouts of the others, "
+                        "simulated / surveyed: {}",
+                        remark_on_others(result_.path.front()), runouts));
     }
 
     /// The farthest front along the path may be that of another release, on the same slope or farther down its gully.
     void tell_other_flow() {
         if (!tracks_ || result_.path.empty()) return;
         const double own = front_of_own_part(result_.path, *tracks_, result_.outline, result_.cell).place;
-        if (!(result_.trace.runout > own + noticeable * result_.cell)) return;
+        if (!(result_.trace.runout > own + kNoticeable * result_.cell)) return;
         remark(
             "the flow from {:.10g}, {:.10g} itself reaches {:.4g} m along the path; the runout of {:.4g} m is that of "
             "another flow, which does not touch it",
@@ -229,7 +228,7 @@ private:
         if (survey_.path || result_.path.empty() || !result_.others.empty() || follows_flow_) return false;
         const double along = result_.trace.runout - result_.surveyed_runout;
         const double straight = result_.trace.reach - result_.surveyed_reach;
-        if (!(std::abs(along - straight) > noticeable * result_.cell)) return false;
+        if (!(std::abs(along - straight) > kNoticeable * result_.cell)) return false;
         remark(
             "the steepest path may turn away from the fronts: they differ by {:+.4g} m along it, but by {:+.4g} "
             "m straight from the release; give the track of the flow with --path",
@@ -237,7 +236,6 @@ private:
         return true;
     }
 
-    static constexpr double noticeable = 5.0;  ///< cells; outlines of pixels are good to one
     const SimulatedRun& run_;
     const Survey& survey_;
     Rings rings_;

@@ -10,22 +10,13 @@
 
 #include "compare/nearest.h"
 #include "compare/outline.h"
+#include "terrain/connected_nodes.h"
 #include "terrain/places.h"
 
 namespace frana {
 namespace {
 
 constexpr Index kNone = -1;
-constexpr double kNoticeable = 5.0;  // cells: less is a lobe beside a path, or a release that hardly moved
-
-/// Calls f(node) for the eight nodes around one.
-template <class F>
-void for_each_adjacent(const GridGeometry& g, Index node, F&& f) {
-    for (Index dj = -1; dj <= 1; ++dj)
-        for (Index di = -1; di <= 1; ++di)
-            if (const NodeAt at{node % g.nx + di, node / g.nx + dj}; (di != 0 || dj != 0) && has_node(g, at))
-                f(at.j * g.nx + at.i);
-}
 
 /// Calls f(node, distance in cells) for nodes up to two columns or rows away, sixteen directions in all: with eight, ways
 /// are up to 8 % too long, with these 3 %. A way between two nodes needs one of those that it passes between.
@@ -61,20 +52,12 @@ FlowTracks::FlowTracks(const Raster& depth, double limit, const std::vector<Vec2
       from_(depth.values.size(), kNone),
       way_(depth.values.size(), std::numeric_limits<double>::infinity()),
       farthest_(starts.size(), kNone) {
-    constexpr Index kCovered = -2;
-    for (std::size_t k = 0; k < part_.size(); ++k)
-        if (depth.values[k] > limit) part_[k] = kCovered;
+    std::vector<char> covered(depth.values.size());
+    for (std::size_t k = 0; k < covered.size(); ++k) covered[k] = depth.values[k] > limit;
     Index parts = 0;
     for (Index first = 0; first < grid_.size(); ++first) {
-        if (part_[static_cast<std::size_t>(first)] != kCovered) continue;
-        std::vector<Index> nodes{first};
-        part_[static_cast<std::size_t>(first)] = parts;
-        for (std::size_t k = 0; k < nodes.size(); ++k)
-            for_each_adjacent(grid_, nodes[k], [&](Index other) {
-                if (part_[static_cast<std::size_t>(other)] != kCovered) return;
-                part_[static_cast<std::size_t>(other)] = parts;
-                nodes.push_back(other);
-            });
+        if (covered[static_cast<std::size_t>(first)] == 0) continue;
+        for (const Index node : take_connected(grid_, covered, first)) part_[static_cast<std::size_t>(node)] = parts;
         ++parts;
     }
     find_ways(starts);
@@ -181,9 +164,17 @@ std::vector<RunoutPath> runout_paths(const Raster& bed, const Raster& depth, dou
 
 std::string remark_on_track(const RunoutPath& path) {
     return fmt::format(
-        "the flow from {:.10g}, {:.10g} left the steepest path before half of its way, so its runout is along the "
-        "track that it covered, and on by the steepest path from its front at {:.10g}, {:.10g}",
+        "the flow from {:.10g}, {:.10g} left the steepest path before half of its way; its runout is along its own "
+        "track, "
+        "and from its front at {:.10g}, {:.10g} on along the steepest path",
         path.line.front().x(), path.line.front().y(), path.front.x(), path.front.y());
+}
+
+std::string remark_on_others(const Vec2& start) {
+    return fmt::format(
+        "flows from several places do not meet, or went down different valleys; the runout is that from {:.10g}, "
+        "{:.10g}",
+        start.x(), start.y());
 }
 
 std::vector<Rings> rings_of_parts(const std::vector<Polyline>& paths, const FlowTracks& tracks, const Rings& outline) {
@@ -192,11 +183,17 @@ std::vector<Rings> rings_of_parts(const std::vector<Polyline>& paths, const Flow
     std::vector<Rings> rings(paths.size());
     for (const auto& ring : outline) {
         const std::optional<Index> part = tracks.part_at(ring.front());
-        const bool is_nobodys = std::find(parts.begin(), parts.end(), part) == parts.end();
+        const bool is_of_none = std::find(parts.begin(), parts.end(), part) == parts.end();
         for (std::size_t n = 0; n < paths.size(); ++n)
-            if (is_nobodys || part == parts[n]) rings[n].push_back(ring);
+            if (is_of_none || part == parts[n]) rings[n].push_back(ring);
     }
     return rings;
+}
+
+std::vector<Rings> rings_of_parts(const std::vector<Polyline>& paths, const Raster& depth, double limit,
+                                  const Rings& outline) {
+    if (paths.size() == 1) return {outline};
+    return rings_of_parts(paths, FlowTracks(depth, limit, {}), outline);
 }
 
 std::vector<Rings> rings_of_polygons(const std::vector<Polyline>& paths, const Polygons& polygons, double step) {
@@ -211,10 +208,10 @@ std::vector<Rings> rings_of_polygons(const std::vector<Polyline>& paths, const P
     for (const Polygon& polygon : polygons.parts) {
         std::vector<char> starts(paths.size());
         for (std::size_t n = 0; n < paths.size(); ++n) starts[n] = starts_in(polygon, n);
-        const bool is_nobodys = std::find(starts.begin(), starts.end(), char{1}) == starts.end();
+        const bool is_of_none = std::find(starts.begin(), starts.end(), char{1}) == starts.end();
         const Rings of_it = rings_of(Polygons{{polygon}, "", ""});
         for (std::size_t n = 0; n < paths.size(); ++n)
-            if (is_nobodys || starts[n] != 0 || starts_in_any[n] == 0)
+            if (is_of_none || starts[n] != 0 || starts_in_any[n] == 0)
                 rings[n].insert(rings[n].end(), of_it.begin(), of_it.end());
     }
     return rings;

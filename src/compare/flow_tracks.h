@@ -52,8 +52,15 @@ std::vector<RunoutPath> runout_paths(const Raster& bed, const Raster& depth, dou
 /// What to say of a path that is the track of the flow.
 std::string remark_on_track(const RunoutPath& path);
 
+/// What to say where runouts are those of one start among several.
+std::string remark_on_others(const Vec2& start);
+
 /// The rings of an outline that count for each path. A part that paths start in counts for those, other parts for all.
 std::vector<Rings> rings_of_parts(const std::vector<Polyline>& paths, const FlowTracks& tracks, const Rings& outline);
+
+/// The same of what lies deeper than `limit` [m]. Of one path it is all.
+std::vector<Rings> rings_of_parts(const std::vector<Polyline>& paths, const Raster& depth, double limit,
+                                  const Rings& outline);
 
 /// The same of surveyed polygons. One in which paths start, or within `step` [m] of its rim, counts for those, and for
 /// paths that start in none.

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "compare/nearest.h"
+#include "terrain/connected_nodes.h"
 #include "terrain/places.h"
 
 namespace frana {
@@ -210,34 +211,21 @@ Polyline smoothed_path(const Polyline& line) {
     return result;
 }
 
-std::vector<Vec2> release_middles(const Raster& arrival_time, std::size_t most) {
+std::vector<Vec2> release_middles(const Raster& arrival_time) {
+    constexpr std::size_t most = 9;
     const GridGeometry& g = arrival_time.geometry;
     std::vector<char> open(arrival_time.values.size());
     for (std::size_t k = 0; k < open.size(); ++k) open[k] = arrival_time.values[k] == 0.0;
     std::vector<std::vector<Index>> releases;
     for (Index first = 0; first < g.size(); ++first) {
         if (!open[static_cast<std::size_t>(first)]) continue;
-        std::vector<Index> nodes{first};
-        open[static_cast<std::size_t>(first)] = 0;
-        for (std::size_t k = 0; k < nodes.size(); ++k)
-            for (const Neighbour& n : neighbours) {
-                const NodeAt at{nodes[k] % g.nx + n.di, nodes[k] / g.nx + n.dj};
-                if (!has_node(g, at) || !open[static_cast<std::size_t>(at.j * g.nx + at.i)]) continue;
-                open[static_cast<std::size_t>(at.j * g.nx + at.i)] = 0;
-                nodes.push_back(at.j * g.nx + at.i);
-            }
-        releases.push_back(std::move(nodes));
+        releases.push_back(take_connected(g, open, first));
     }
     std::stable_sort(releases.begin(), releases.end(),
                      [](const auto& a, const auto& b) { return a.size() > b.size(); });
     std::vector<Vec2> middles;
     for (std::size_t k = 0; k < std::min(most, releases.size()); ++k) middles.push_back(middle_of(releases[k], g));
     return middles;
-}
-
-std::optional<Vec2> release_middle(const Raster& arrival_time) {
-    const std::vector<Vec2> largest = release_middles(arrival_time, 1);
-    return largest.empty() ? std::nullopt : std::optional<Vec2>(largest.front());
 }
 
 bool ridge_between(const Raster& bed, const Raster& peak_depth, double limit, const Vec2& a, const Vec2& b) {

@@ -9,6 +9,9 @@
 
 namespace frana {
 
+/// Cells: from there on a difference of fronts counts. Outlines of pixels are good to one.
+inline constexpr double kNoticeable = 5.0;
+
 /// The way that water would take from a node to the edge of the terrain. It goes to the lowest of the eight neighbours
 /// by slope (O'Callaghan & Mark 1984). Out of hollows it goes over their lowest edge (priority flood, Barnes et al.
 /// 2014). It ends where it meets the edge to stay there, for eleven nodes or to its last. Nodata is an edge; round a
@@ -20,12 +23,9 @@ Polyline steepest_path(const Raster& bed, const Vec2& start);
 /// and leaves the bends of a valley.
 Polyline smoothed_path(const Polyline& line);
 
-/// Middles of up to `most` releases, those of the largest areas first. A middle is the node nearest to the centroid of
+/// Middles of up to nine releases, those of the largest areas first. A middle is the node nearest to the centroid of
 /// its release. Released are the nodes whose arrival time is 0; those that touch are one release.
-std::vector<Vec2> release_middles(const Raster& arrival_time, std::size_t most);
-
-/// Middle of the largest release; nothing when there is none.
-std::optional<Vec2> release_middle(const Raster& arrival_time);
+std::vector<Vec2> release_middles(const Raster& arrival_time);
 
 /// Whether a ridge lies between two places: ground that is higher than both by a twentieth of their distance, where the
 /// flow did not get deeper than `limit` [m]. Without elevations there is none.

@@ -84,20 +84,20 @@ struct Way {
     std::vector<Polyline> others;  ///< from where else material is or comes in
 };
 
-/// Middles of the releases, the largest first: of the terrain's nodes that are nearest to particles.
-std::vector<Vec2> middles_of_releases(const Scene& scene, const GridGeometry& g) {
-    constexpr std::size_t most = 9;
+/// Middles of the releases, the largest first: of the nodes that are nearest to particles.
+std::vector<Vec2> middles_of_releases(const Scene& scene) {
+    const GridGeometry& g = scene.bed.geometry;  // also where it is a small part of the terrain
     Raster released;
     released.geometry = g, released.values.assign(static_cast<std::size_t>(g.size()), Raster::nodata);
     for (std::size_t p = 0; p < scene.particles.x.size(); ++p)
         if (const NodeAt at = nearest_node(g, {scene.particles.x[p], scene.particles.y[p]}); has_node(g, at))
             released.at(at.i, at.j) = 0.0;
-    return release_middles(released, most);
+    return release_middles(released);
 }
 
 /// Places where the flow begins. Of one release it is the particle nearest to its middle.
-std::vector<Vec2> starts_of(const Scene& scene, const GridGeometry& g) {
-    std::vector<Vec2> starts = middles_of_releases(scene, g);
+std::vector<Vec2> starts_of(const Scene& scene) {
+    std::vector<Vec2> starts = middles_of_releases(scene);
     if (starts.size() == 1) starts.front() = *flow_start(scene);
     for (const Vec2& start : starts_of_what_comes_in(scene)) starts.push_back(start);
     return starts;
@@ -106,7 +106,7 @@ std::vector<Vec2> starts_of(const Scene& scene, const GridGeometry& g) {
 /// To the edge of those nodes of the terrain: a scene may hold no more of it than where its flow begins.
 Way way_of(const Scene& scene, const GridGeometry& shown) {
     Way way;
-    const std::vector<Vec2> starts = starts_of(scene, shown);
+    const std::vector<Vec2> starts = starts_of(scene);
     if (starts.empty()) return way;
     const Raster bed = bed_over(scene.bed, scene.wider.get(), shown);
     way.start = starts.front(), way.path = steepest_path(bed, starts.front());
@@ -119,7 +119,7 @@ Way way_of(const Scene& scene, const GridGeometry& shown) {
 /// The base's, so that runs compare. A flow that begins more than a cell from there has its own. That goes over the
 /// ground that it came to, as that of a comparison of the run.
 Way way_of(const Scene& scene, const EnsembleBase& base, const GridGeometry& shown) {
-    const std::vector<Vec2> starts = starts_of(scene, shown);
+    const std::vector<Vec2> starts = starts_of(scene);
     if (!starts.empty() && base.start && (starts.front() - *base.start).norm() <= base.whole.cell)
         return {base.start, base.path, base.others};
     return way_of(scene, shown);
@@ -142,7 +142,7 @@ void measure_extent(const EnsembleBase& base, const Scene& scene, const Raster& 
     }
     std::vector<Polyline> paths{way.path};
     paths.insert(paths.end(), way.others.begin(), way.others.end());
-    const std::vector<Rings> rings = rings_of_parts(paths, FlowTracks(depth, base.footprint_depth, {}), outline);
+    const std::vector<Rings> rings = rings_of_parts(paths, depth, base.footprint_depth, outline);
     result.reach = farthest_from(*way.start, rings.front());
     result.runout = fronts_along(paths, rings, cell).front().place;
 }

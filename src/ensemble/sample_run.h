@@ -26,7 +26,7 @@ struct EnsembleBase {
     GridGeometry whole;  ///< nodes of all of the terrain; the maps' pixels
     std::string title;
     double footprint_depth = 0.1;       ///< [m]
-    std::optional<Vec2> start;          ///< the middle of the releases
+    std::optional<Vec2> start;          ///< of the path: the middle of the largest release
     std::optional<Polygons> footprint;  ///< surveyed, where the case has one
     std::optional<Rings> survey;        ///< its rings
     bool bed_changes = false;           ///< it is erodible, or something can be left behind

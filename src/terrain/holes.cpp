@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "terrain/connected_nodes.h"
+
 namespace frana {
 namespace {
 
@@ -17,17 +19,7 @@ public:
     bool missing(Index k) const { return missing_[static_cast<std::size_t>(k)]; }
 
     /// The group that node k belongs to, which is marked no more.
-    std::vector<Index> take(Index k) {
-        std::vector<Index> group;
-        add(k, group);
-        for (std::size_t n = 0; n < group.size(); ++n) {
-            const Index i = group[n] % g_.nx, j = group[n] / g_.nx;
-            for (Index b = std::max<Index>(0, j - 1); b <= std::min(g_.ny - 1, j + 1); ++b)
-                for (Index a = std::max<Index>(0, i - 1); a <= std::min(g_.nx - 1, i + 1); ++a)
-                    add(b * g_.nx + a, group);
-        }
-        return group;
-    }
+    std::vector<Index> take(Index k) { return take_connected(g_, missing_, k); }
 
     /// Takes all that reaches the outer nodes.
     void take_outside() {
@@ -37,12 +29,6 @@ public:
     }
 
 private:
-    void add(Index k, std::vector<Index>& group) {
-        if (!missing(k)) return;
-        missing_[static_cast<std::size_t>(k)] = 0;
-        group.push_back(k);
-    }
-
     GridGeometry g_;
     std::vector<char> missing_;
 };

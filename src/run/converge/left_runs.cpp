@@ -4,12 +4,9 @@
 
 #include <algorithm>
 
+#include "run/folder/left_terrain.h"
+
 namespace frana {
-namespace {
-
-constexpr const char* kWayOut = "give a wider elevation model or terrain.window";
-
-}  // namespace
 
 void doubt_left(ConvergenceStudy& study) {
     if (std::all_of(study.left.begin(), study.left.end(), [](double share) { return share == 0.0; })) return;

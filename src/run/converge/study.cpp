@@ -58,8 +58,6 @@ RunFiles read_run(const fs::path& folder) {
     return run;
 }
 
-constexpr double noticeable = 5.0;  // cells; outlines of pixels are good to one
-
 /// The path that all runouts are measured along.
 struct Path {
     Polyline line;                 ///< empty: none is known
@@ -69,9 +67,8 @@ struct Path {
 };
 
 Path path_of(const RunFiles& finest, const Raster& bed, double limit, std::vector<std::string>& remarks) {
-    constexpr std::size_t most = 9;
     Path path;
-    std::vector<Vec2> starts = release_middles(finest.raster("arrival_time"), most);
+    std::vector<Vec2> starts = release_middles(finest.raster("arrival_time"));
     for (const Vec2& start : starts_in(finest.record)) starts.push_back(start);
     if (!starts.empty()) path.start = starts.front();
     if (!path.start) {
@@ -85,11 +82,7 @@ Path path_of(const RunFiles& finest, const Raster& bed, double limit, std::vecto
     if (!paths.empty() && paths.front().start == 0) {
         path.line = paths.front().line;
         if (paths.front().of_flow) remarks.push_back("on the finest cell " + remark_on_track(paths.front()));
-        if (paths.size() > 1)
-            remarks.push_back(fmt::format(
-                "flows from several places do not meet, or went down different valleys; the runout is that from "
-                "{:.10g}, {:.10g}",
-                starts.front().x(), starts.front().y()));
+        if (paths.size() > 1) remarks.push_back(remark_on_others(starts.front()));
         return path;
     }
     remarks.push_back("no steepest path from the start of the flow is known; the runout is the straight reach");
@@ -117,11 +110,11 @@ CellFigures figures_of(const RunFiles& run, const RunFiles& finest, Path& path, 
     } else {
         std::vector<Polyline> lines{path.line};
         lines.insert(lines.end(), path.others.begin(), path.others.end());
-        const std::vector<Rings> rings = rings_of_parts(lines, FlowTracks(covered, limit, {}), outline);
+        const std::vector<Rings> rings = rings_of_parts(lines, covered, limit, outline);
         figures.reach = farthest_from(*path.start, rings.front());
         const FrontAlong front = fronts_along(lines, rings, figures.cell).front();
         figures.runout = front.place;
-        if (path.turn.empty()) path.turn = remark_on_turn(front, noticeable * figures.cell);
+        if (path.turn.empty()) path.turn = remark_on_turn(front, kNoticeable * figures.cell);
     }
     figures.footprint_area = area_deeper(covered, limit);
     figures.deposit_area = area_deeper(deposit, limit);
@@ -174,7 +167,7 @@ void remark_on_path(ConvergenceStudy& study) {
     const CellFigures& finest = study.figures.back();
     for (const CellFigures& f : study.figures) {
         const double along = f.runout - finest.runout, straight = f.reach - finest.reach;
-        if (!(std::abs(along - straight) > noticeable * f.cell)) continue;
+        if (!(std::abs(along - straight) > kNoticeable * f.cell)) continue;
         study.remarks.push_back(fmt::format(
             "the steepest path may turn away from the fronts: on cells of {:g} m they differ from the finest by "
             "{:+.4g} m along it, but by {:+.4g} m straight from the release",

@@ -7,8 +7,6 @@
 namespace frana {
 namespace {
 
-constexpr const char* kWayOut = "give a wider elevation model or terrain.window";
-
 double infiltrated(const RunRecord& r) { return r.extras.water ? r.extras.water->infiltrated_mass : 0.0; }
 
 }  // namespace

@@ -7,6 +7,9 @@
 
 namespace frana {
 
+/// What to do where the flow left the terrain.
+inline constexpr const char* kWayOut = "give a wider elevation model or terrain.window";
+
 /// "6124 m3", of two phases the volume of each.
 std::string left_text(const RunRecord& record);
 

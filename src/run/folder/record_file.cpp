@@ -19,7 +19,8 @@ std::vector<Vec2> starts_in(const Json& record) {
     using namespace nlohmann::literals;
     if (!record.is_object()) return {};
     Json starts = record.value("/results/starts"_json_pointer, Json());
-    if (!starts.is_array()) starts = Json::array({record.value("/results/start"_json_pointer, Json())});  // until 0.1
+    if (!starts.is_array())
+        starts = Json::array({record.value("/results/start"_json_pointer, Json())});  // older records have one
     std::vector<Vec2> places;
     for (const Json& start : starts)
         if (start.is_array() && start.size() == 2 && start[0].is_number() && start[1].is_number())
