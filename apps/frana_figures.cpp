@@ -102,6 +102,7 @@ void read_record(const fs::path& run_dir, FigureSource& source) {
         source.front_origin = results.value("front_from", source.front_origin);  // older runs have none
         source.never_hit = never_hit_in(json);
         source.mean_over = mean_over_in(json);
+        source.density = json.value("density", source.density);  // older runs have none
     } catch (const nlohmann::json::exception&) {
         throw UserError(
             fmt::format("{}: is not what a run leaves there; expected the record of a finished run; "
@@ -345,7 +346,6 @@ int figures_command(const FiguresOptions& options) {
     if (options.web) {
         if (const std::string why_not = no_page_reason(); !why_not.empty())
             throw UserError(fmt::format("--web: {}", why_not));
-        source.density = case_of_run(options.run_dir).number("material.density");
         frames = frames_of_run(source);
         add_page(source, frames, text_of(options.run_dir / "run.json"), gallery);
     } else {

@@ -282,6 +282,34 @@ TEST_CASE("The page of a flood tells what came in, where its front is measured f
     check(data_of(text_of(slope.run_dir() / "figures" / "view.html")));
 }
 
+TEST_CASE("The page of water has its volumes, drawn again too", "[page]") {
+    if (cannot_show()) return;
+    const Slope slope;
+    write_text(slope.path() / "water.toml",
+               "[case]\ntitle = \"Flood\"\n[terrain]\ndem = \"dem.asc\"\nwindow = [1005, 2000, 1150, "
+               "2100]\n[[inflow]]\nname = \"torrent\"\nline = [[1050, "
+               "2035], [1050, 2065]]\nvolume = 400\npeak = 80\n[water]\nmodel = "
+               "\"free\"\nfriction = \"manning\"\nmanning_n = 0.05\ndensity = 1100\n[time]\nend = 5\n[output]\nformats "
+               "= [\"vtk\", "
+               "\"web\"]\n");
+    const Outcome done = call_frana(slope.path(), "run water.toml --out run --quiet");
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    const Json record = Json::parse(text_of(slope.run_dir() / "run.json"));
+    CHECK(record.at("density") == 1100.0);
+    const double flows = record.at("budgets").at("mass").at("final").get<double>() / 1100.0;
+    const auto last_volume = [&] {
+        return data_of(text_of(slope.run_dir() / "figures" / "view.html"))
+            .at("curves")
+            .at("volume")
+            .back()
+            .get<double>();
+    };
+    CHECK(last_volume() == Approx(flows).epsilon(1e-6));  // float32 of frames
+    REQUIRE(call_frana(slope.path(), "figures run --web").code == 0);
+    CHECK(last_volume() == Approx(flows).epsilon(1e-6));
+}
+
 TEST_CASE("A run without frames for ParaView has them on its page, and without the format there is no page", "[page]") {
     if (cannot_show()) return;
     const Slope slope;

@@ -413,6 +413,7 @@ std::string run_json(const RunRecord& record) {
                  {"frames", s.frames},
                  {"grid", {{"nx", record.grid.nx}, {"ny", record.grid.ny}, {"cell", record.grid.cell}}},
                  {"particles", {{"initial", record.particles}, {"final", s.last.particles}}},
+                 {"density", record.density},
                  {"release_volume", record.release_volume},
                  {"release_volume_later", released_later(record)},
                  {"wall_seconds", time_json(s)},
