@@ -331,6 +331,7 @@ TEST_CASE("A flood that takes up its bed grows from what came in", "[program][in
     CHECK_THAT(text_of(dir / "report.md"),
                Contains(fmt::format("(its mass grew {:.3g} times)", (kVolume + taken) / kVolume)));
     const std::string caption = record_of(dir)["caption"];  // that of another growth is another
+    CHECK_THAT(caption, Catch::StartsWith(fmt::format("inflow {:.6g} m3, ", kVolume)));
     for (const char* text : {"erodible.law growth, ", "erodible.growth 0.01 1/m, ", "erodible.depth 0.5 m, "})
         CHECK_THAT(caption, Contains(text));
 }

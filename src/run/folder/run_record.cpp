@@ -12,6 +12,7 @@
 #include "run/folder/run_page.h"
 #include "scene/case_file.h"
 #include "scene/flow_start.h"
+#include "scene/inflow_facts.h"
 #include "scene/remarks.h"
 
 namespace frana {
@@ -44,9 +45,21 @@ std::vector<GivenKey> given_keys(const CaseFile& file) {
     return rows;
 }
 
-/// "law = voellmy, friction_angle_deg = 34 degree, ...; steep terrain, cells of 5 m".
-std::string caption_of(const Scene& scene, const std::vector<GivenKey>& given) {
+/// "released 8391 m3, inflow 400 m3, ": what makes pictures differ though the material is the same.
+std::string volumes_of(const Scene& scene) {
+    double released = 0.0, inflow = 0.0;
+    for (const Seeds* seeds : scene.all_particles())
+        for (const double volume : seeds->volume) released += volume;
+    for (const Inflow& source : scene.inflows) inflow += facts_of(source, scene.gravity).volume;
     std::string text;
+    if (released > 0.0) text += fmt::format("released {:.6g} m3, ", released);
+    if (inflow > 0.0) text += fmt::format("inflow {:.6g} m3, ", inflow);
+    return text;
+}
+
+/// "released 8391 m3, density 1800 kg/m^3, bed.law voellmy, ..., terrain model steep, cells of 5 m".
+std::string caption_of(const Scene& scene, const std::vector<GivenKey>& given) {
+    std::string text = volumes_of(scene);
     for (const GivenKey& key : given) {
         const std::string table = key.key.substr(0, key.key.find('.'));
         const bool material = table == "material";
