@@ -239,6 +239,7 @@ TEST_CASE("The largest depth and speed that a run tells of are those of its peak
         Structure structure;
         structure.material.young = 2e6, structure.material.critical_strain = 0.05, structure.cohesion = 1e9;
         scene.structure = structure;
+        if (GENERATE(false, true)) scene.water.emplace(), scene.water->share = 0.3;
         const Told told = told_by(scene);
         CHECK(told.depth == told.peak_depth);
         CHECK(told.speed == told.peak_speed);

@@ -111,11 +111,6 @@ void StructuredRun::node_fields(Frame& frame) {
         const double density = StructuredMap::density_of(body, k),
                      pressure = density * StructuredMap::pressing(body, k) * h,
                      speed = std::sqrt(node.vx * node.vx + node.vy * node.vy + up * up);
-        // Peaks were noted before the last drift, and the next step notes what stands there now. No frame is ahead of its
-        // own, and none changes the run.
-        NodePeak peak = map_.peak(k);
-        peak.note({h, speed, pressure, density}, status_.time, footprint);
-        fields.stand(n, fields.elevation[n], peak, peak.arrival_time(footprint));
         fields.flow(n, {h, std::sqrt(1.0 + ground.slope_x * ground.slope_x + ground.slope_y * ground.slope_y), node.vx,
                         node.vy, up, speed, pressure});
     });

@@ -83,7 +83,7 @@ StructuredRun::StructuredRun(const Scene& scene, Start start)
       map_(flow().body().grid, centre_of(scene), scene.output.footprint_depth, path_of(scene, flow().body().grid)),
       neighbours_(flow(), reach_of_neighbours(scene.particles)) {
     if (start == Start::resumed) return;
-    map_.note(flow().body(), water(), 0.0);
+    map_.note(flow().body(), water(), 0.0, StructuredMap::Peaks::grow);
     accumulate();
 }
 
@@ -92,7 +92,8 @@ void StructuredRun::advance(double until) {
         both_->advance(until);
     else
         alone_->advance(until);
-    timed_("peaks", [&] { map_.note(flow().body(), water(), time()); });
+    const auto peaks = aside_ ? StructuredMap::Peaks::stay : StructuredMap::Peaks::grow;
+    timed_("peaks", [&] { map_.note(flow().body(), water(), time(), peaks); });
     accumulate();
 }
 
@@ -297,6 +298,7 @@ std::vector<PhaseTime> StructuredRun::timings() const {
 }
 
 void StructuredRun::serialize(Archive& archive) {
+    aside_ = archive.aside() && !archive.loading();
     {
         const Archive::Part part(archive, "columns");
         if (both_)

@@ -72,6 +72,7 @@ private:
     double solid_density_;  ///< of grains [kg/m^3]
     bool solids_;           ///< otherwise there is water alone
     bool inflows_;
+    bool aside_ = false;  ///< it shows an output between two of its steps, and comes back to the state before
     std::unique_ptr<StructuredFlow> alone_;  ///< of a dry run
     std::unique_ptr<TwoPhaseFlow> both_;     ///< of one with water
     StructuredMap map_;

@@ -52,7 +52,7 @@ Standing on_node(const StructuredBody& body, const WaterFlow* water, Index i, In
 
 }  // namespace
 
-void StructuredMap::note(const StructuredBody& body, const WaterFlow* water, double time) {
+void StructuredMap::note(const StructuredBody& body, const WaterFlow* water, double time, Peaks peaks) {
     const GridGeometry& g = body.grid.geometry();
     tiles_ = body.active.work;
     if (water) {
@@ -75,7 +75,7 @@ void StructuredMap::note(const StructuredBody& body, const WaterFlow* water, dou
                 const double up = climb(k, node.velocity.x(), node.velocity.y());
                 const NodeState now{node.depth, std::sqrt(node.velocity.squaredNorm() + up * up), node.pressure,
                                     node.inertia / node.depth};
-                peaks_[k].note(now, time, footprint_depth_);
+                if (peaks == Peaks::grow) peaks_[k].note(now, time, footprint_depth_);
                 extent.note(now, footprint_depth_, g.cell * g.cell, (Vec2(g.x(i), g.y(j)) - centre_).norm());
             }
         of_tile_[static_cast<std::size_t>(n)] = extent;
@@ -131,6 +131,8 @@ void StructuredMap::sample(const StructuredBody& body, const WaterFlow* water, c
 
 void StructuredMap::serialize(Archive& archive) {
     const Archive::Part part(archive, "map");
+    archive.numbers("sums", extent_.numbers());
+    if (archive.aside()) return;  // steps aside leave the peaks as they are
     const auto each = [&](auto&& body) {
         for (Index j = 0; j < ny_; ++j)
             for (Index i = 0; i < nx_; ++i) body(peaks_[(j + kTile) * stride_ + i + kTile]);
@@ -141,7 +143,6 @@ void StructuredMap::serialize(Archive& archive) {
             for (const double number : q.numbers()) all.push_back(number);
         });
     archive.array("peaks", all);
-    archive.numbers("sums", extent_.numbers());
     const std::size_t expected = NodePeak::kNumbers * static_cast<std::size_t>(nx_ * ny_);
     if (all.size() != expected) Archive::wrong_length("peaks", all.size(), expected);
     if (!archive.loading()) return;
