@@ -317,6 +317,26 @@ TEST_CASE("What a run over an area leaves as its case in full is a case", "[prog
     CHECK_THAT(text_of(dir + "/resolved.toml"), !Contains("velocity = \"normal\""));
 }
 
+TEST_CASE("Sediment that passes a section is the share of the ground along its line", "[program][inflow][zones]") {
+    const Flood plane;
+    std::string text = text_of(plane.file());
+    const std::string voellmy = "law = \"voellmy\"\nmu = 0.05\nxi = 400\n";
+    text.replace(text.find(voellmy), voellmy.size(),
+                 "law = \"pouliquen\"\nmu_s = 0.05\nmu_2 = 0.4\ngrain_diameter = 0.01\nsolid_fraction = 0.6\n"
+                 "[[material.zone]]\noutline = \"beyond.geojson\"\nsolid_fraction = 0.3\n");
+    write_text(plane.file(), text);
+    write_text(plane.folder() / "beyond.geojson",
+               R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry":
+               {"type": "Polygon", "coordinates": [[[48, 0], [98, 0], [98, 100], [48, 100], [48, 0]]]}}]})");
+    const fs::path dir = plane.folder() / "out";
+    const Outcome run = plane.frana("run CASE --quiet --set output.formats=[] --out " + dir.string());
+    INFO(run.err);
+    REQUIRE(run.code == 0);
+    const Json bridge = record_of(dir)["sections"][0];
+    REQUIRE(bridge["volume"].get<double>() > 1.0);
+    CHECK(bridge["sediment"].get<double>() == Approx(0.3 * bridge["volume"].get<double>()).epsilon(1e-12));
+}
+
 TEST_CASE("A flood that takes up its bed grows from what came in", "[program][inflow][erosion]") {
     const Flood plane;
     const fs::path dir = plane.folder() / "out";

@@ -419,8 +419,8 @@ std::string sections(const RunRecord& r) {
            "\nThe volume is that of the particles that passed, each with the mass that it had there, and is exact for "
            "them. Beyond the line some of it may have become bed, or the flow may have taken up more. The discharge is "
            "that of the nodes. "
-           "Sediment is the solid part of the volume: `material.bed.solid_fraction` of it where the bed law has one, "
-           "otherwise all.\n\n";
+           "Sediment is the solid part of the volume: `material.bed.solid_fraction` of it, by the mean of the ground "
+           "along the line, where the bed law has one, otherwise all.\n\n";
 }
 
 std::string friction(const RunRecord& r) {

@@ -276,10 +276,17 @@ int threads_for_files() {
     return known && limit.rlim_cur == RLIM_INFINITY ? omp_get_max_threads() : 1;
 }
 
-/// Of one phase all is solid, except with a bed law that has the share of grains.
-double solid_share(const Scene& scene) {
+/// Of one phase all is solid, except with a bed law that has the share of grains. Where that varies spatially it is the
+/// mean along the line: material has the share of the ground that it is on.
+double solid_share(const Scene& scene, const Polyline& line) {
     const auto* granular = std::get_if<bed::Pouliquen>(&scene.bed_law);
-    return granular ? granular->solid_fraction : 1.0;
+    if (!granular) return 1.0;
+    if (!scene.bed_laws()) return granular->solid_fraction;
+    const std::vector<Station> places = stations(line, 0.5 * scene.bed.geometry.cell);
+    double sum = 0.0;
+    for (const Station& station : places)
+        sum += std::get<bed::Pouliquen>(bed_law_at(scene, station.point)).solid_fraction;
+    return sum / static_cast<double>(places.size());
 }
 
 /// What passes the sections of the scene; nothing without any.
@@ -288,7 +295,8 @@ std::unique_ptr<Observer> make_sections(const Scene& scene, const fs::path& run_
     std::vector<SectionLine> lines;
     const GridGeometry& terrain = scene.wider ? scene.wider->grid : scene.bed.geometry;
     for (const Section& section : scene.sections)
-        lines.push_back({section.name, section.line, section.to_right, terrain.pixel_extent(), solid_share(scene)});
+        lines.push_back(
+            {section.name, section.line, section.to_right, terrain.pixel_extent(), solid_share(scene, section.line)});
     if (lines.empty()) return {};
     return std::make_unique<Sections>(run_dir, lines, 0.5 * scene.bed.geometry.cell, summaries);
 }
