@@ -57,6 +57,16 @@ TEST_CASE("A bent channel has its width, and so has a disc", "[width]") {
     CHECK(flow_width(disc, 0.1) == to_half_a_cell(400.0));
 }
 
+TEST_CASE("A rhombus is as wide as the largest circle in it, whatever notches its edge has", "[width]") {
+    const double deep = GENERATE(0.0, 5.0, 10.0);  // [m], a notch each 40 m
+    const Raster rhombus = flow_of([deep](double x, double y) {
+        const bool notch = std::abs(std::remainder(x, 40.0)) < 0.5 * cell;
+        return std::abs(x) + std::abs(y) < 300.0 - (notch ? deep : 0.0);
+    });
+    // To the notches' depth, and half a cell on either side.
+    CHECK(flow_width(rhombus, 0.1) == Approx(600.0 * std::sqrt(0.5)).margin(cell + deep).epsilon(0.0));
+}
+
 TEST_CASE("The median goes by the flow's length, not by its area", "[width]") {
     // 300 m of a fan that has twice the area of the 700 m long channel before it.
     const Raster flow =

@@ -72,7 +72,8 @@ py::list rasters_in(const std::string& dir) {
     const std::vector<ProductRaster> rasters = aside([&] { return read_rasters(dir); });
     py::list all;
     for (const ProductRaster& product : rasters)
-        all.append(py::make_tuple(product.name, product.unit, product.description, north_up(product.raster)));
+        all.append(
+            py::make_tuple(product.name, product.unit, product.description, north_up(as_in_file(product, rasters))));
     return all;
 }
 

@@ -315,8 +315,10 @@ private:
 
 py::list rasters_of(const Run& run) {
     py::list all;
-    for (const ProductRaster& product : run.standing().rasters())
-        all.append(py::make_tuple(product.name, product.unit, product.description, north_up(product.raster)));
+    const std::vector<ProductRaster>& rasters = run.standing().rasters();
+    for (const ProductRaster& product : rasters)
+        all.append(
+            py::make_tuple(product.name, product.unit, product.description, north_up(as_in_file(product, rasters))));
     return all;
 }
 

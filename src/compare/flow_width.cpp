@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 
 #include "base/round_number.h"
@@ -44,6 +45,7 @@ public:
                 add_width_between({i, j}, {i + 1, j}, found);
                 add_width_between({i, j}, {i, j + 1}, found);
             }
+        add_rest(found);
         return found;
     }
 
@@ -52,6 +54,11 @@ private:
 
     std::size_t at(Index i, Index j) const { return static_cast<std::size_t>(j * nx_ + i); }
     bool covered(Index i, Index j) const { return covered_[at(i, j)] != 0; }
+    /// Also of places beyond the border.
+    bool covers(const Vec2& place) const {
+        const Index i = std::lround(place.x()), j = std::lround(place.y());
+        return i >= 0 && j >= 0 && i < nx_ && j < ny_ && covered(i, j);
+    }
 
     void fill_small_holes() {
         constexpr std::size_t small = 9;  // nodes: three by three
@@ -130,6 +137,20 @@ private:
         found.push_back(section(middle, (to_a - to_b).normalized()));
     }
 
+    /// What sections at the middle do not stand for, a cell of length each: no banks of a compact shape with corners face
+    /// each other. It is as wide as the largest circle in the footprint, and as long as its area makes it.
+    void add_rest(std::vector<double>& found) const {
+        const auto area = static_cast<double>(std::count(covered_.begin(), covered_.end(), 1));
+        const double rest = area - std::accumulate(found.begin(), found.end(), 0.0);
+        Node deepest{0, 0};
+        for (Index j = 1; j + 1 < ny_; ++j)
+            for (Index i = 1; i + 1 < nx_; ++i)
+                if (covered(i, j) && to_bank({i, j}).norm() > to_bank(deepest).norm()) deepest = {i, j};
+        const Vec2 middle(static_cast<double>(deepest.first), static_cast<double>(deepest.second));
+        const double width = section(middle, to_bank(deepest).normalized());
+        if (rest >= width) found.insert(found.end(), static_cast<std::size_t>(rest / width), width);
+    }
+
     /// Mean length of the sections through places around the middle: one alone sees single steps of the edge.
     double section(const Vec2& middle, const Vec2& across) const {
         constexpr int each_side = 6;
@@ -139,7 +160,7 @@ private:
         int count = 0;
         for (int k = -each_side; k <= each_side; ++k) {
             const Vec2 start = middle + apart * k * along;
-            if (!covered(std::lround(start.x()), std::lround(start.y()))) continue;
+            if (!covers(start)) continue;
             sum += way_out(start, across) + way_out(start, -across);
             ++count;
         }
@@ -169,7 +190,6 @@ double flow_width(const Raster& depth, double limit) {
     const Footprint footprint(depth, limit);
     if (footprint.empty()) return Raster::nodata;
     std::vector<double> widths = footprint.widths();
-    if (widths.empty()) return depth.geometry.cell;
     const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
     std::nth_element(widths.begin(), middle, widths.end());
     return *middle * depth.geometry.cell;

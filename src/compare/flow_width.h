@@ -16,7 +16,8 @@ constexpr double least_cells_across = 6.0;
 /// between neighbouring nodes whose nearest banks lie in directions more than 120 degrees apart. So ends, corners and
 /// ragged edges are none of it. At each such place the width is the length of the section across, averaged over three
 /// cells along the flow. The median over these places weights the flow's length, not its area. A footprint that is
-/// wider than long is measured along, its narrower way. One without a middle is a cell wide.
+/// wider than long is measured along, its narrower way. Area that these sections do not stand for, as in a rhombus, is
+/// as wide as the largest circle in the footprint.
 double flow_width(const Raster& depth, double limit);
 
 /// The largest of 1, 2, 2.5, 5, 10, ... m, cells of which resolve a flow of this width [m].

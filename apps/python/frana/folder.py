@@ -118,7 +118,7 @@ class Folder:
     history : numpy structured array
         history.csv: "t" [s], "mass" [kg], "kinetic" [J], "max_depth" [m], "front" [m], ...
     rasters : Rasters
-        rasters/*.tif, north row first.
+        rasters/*.tif, north row first; NaN where the flow never came.
     record : dict
         run.json.
     report : str

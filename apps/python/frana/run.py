@@ -92,7 +92,8 @@ class Result:
     Attributes
     ----------
     rasters : Rasters
-        "peak_depth", "peak_speed", "arrival_time", "final_depth", ...: also as attributes of the result itself.
+        "peak_depth", "peak_speed", "arrival_time", "final_depth", ...: also as attributes of the result itself. NaN
+        where the flow never came, 0 where it came and left nothing.
     record : dict
         The content of run.json: numbers in SI units.
     warnings : list of str

@@ -250,16 +250,17 @@ ProductRaster elevation_raster(const Raster& bed) {
     return {kElevation, "m", "elevation of the bed at the start of the run", bed};
 }
 
+Raster as_in_file(const ProductRaster& product, const std::vector<ProductRaster>& rasters) {
+    const ProductRaster* peak = find_product(rasters, "peak_depth");
+    return peak && is_of_flow(product.name) ? without_untouched(product.raster, peak->raster) : product.raster;
+}
+
 void write_rasters(const fs::path& run_dir, const std::vector<ProductRaster>& rasters, const std::string& title) {
     fs::create_directories(run_dir / "rasters");
     const FileTags tags = tags_of(title);
-    const ProductRaster* peak = find_product(rasters, "peak_depth");
-    for (const ProductRaster& product : rasters) {
-        const bool cut = peak != nullptr && is_of_flow(product.name);
-        write_geotiff(raster_file(run_dir, product.name),
-                      cut ? without_untouched(product.raster, peak->raster) : product.raster, product.unit,
+    for (const ProductRaster& product : rasters)
+        write_geotiff(raster_file(run_dir, product.name), as_in_file(product, rasters), product.unit,
                       product.description, tags);
-    }
 }
 
 std::vector<ProductRaster> read_rasters(const fs::path& run_dir) {

@@ -79,10 +79,12 @@ const ProductRaster* find_product(const std::vector<ProductRaster>& rasters, con
 /// Area of a depth raster that is deeper than `limit` [m] [m2].
 double area_deeper(const Raster& depth, double limit);
 
-/// Writes rasters/<name>.tif. Zero is nodata where the flow never came: outside of peak_depth above 0. This holds for
-/// peaks, depths, velocities and changes of the bed. Zero inside of it stays. Each has `title` and the software. It has
-/// a date when the environment has SOURCE_DATE_EPOCH. Any other would change the bytes of a run that is resumed. Throws
-/// UserError.
+/// One of these rasters as its file has it. Zero is nodata where the flow never came: outside of peak_depth above 0. This
+/// holds for peaks, depths, velocities and changes of the bed. Zero inside of it stays.
+Raster as_in_file(const ProductRaster& product, const std::vector<ProductRaster>& rasters);
+
+/// Writes rasters/<name>.tif, as_in_file(). Each has `title` and the software. It has a date when the environment has
+/// SOURCE_DATE_EPOCH. Any other would change the bytes of a run that is resumed. Throws UserError.
 void write_rasters(const std::filesystem::path& run_dir, const std::vector<ProductRaster>& rasters,
                    const std::string& title);
 
