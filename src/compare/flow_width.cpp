@@ -147,7 +147,8 @@ private:
             for (Index i = 1; i + 1 < nx_; ++i)
                 if (covered(i, j) && to_bank({i, j}).norm() > to_bank(deepest).norm()) deepest = {i, j};
         const Vec2 middle(static_cast<double>(deepest.first), static_cast<double>(deepest.second));
-        const double width = section(middle, to_bank(deepest).normalized());
+        const Vec2 across = to_bank(deepest).normalized();  // or, at the end of something narrow, along it
+        const double width = std::min(section(middle, across), section(middle, {-across.y(), across.x()}));
         if (rest >= width) found.insert(found.end(), static_cast<std::size_t>(rest / width), width);
     }
 
