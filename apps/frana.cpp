@@ -180,7 +180,8 @@ void add_particles(CLI::App& app, ParticlesOptions& options, Action& action) {
 }
 
 void add_convert(CLI::App& app, ConvertOptions& options, Action& action) {
-    CLI::App* command = app.add_subcommand("convert", "particles of a run to 3D points, with what is kept on the way");
+    CLI::App* command =
+        app.add_subcommand("convert", "particles of a run to 3D points, with what is conserved on the way");
     command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();
     numeric(command->add_option("--time", options.time, "simulated time [s]; the nearest frame is taken"), kFinite);
     numeric(command->add_option("--spacing", options.spacing, "vertical distance of the points [m]"), kFinite);
@@ -305,7 +306,7 @@ void add_fuzz(CLI::App& app, FuzzOptions& options, Action& action) {
     numeric(command->add_option("--seconds", options.seconds, "wall time for running scenes; default 60"), kAboveZero);
     command->add_option(
         "--model", options.models,
-        "what carries the scenes: all (the default), or with commas between them depth_averaged, solid_flow "
+        "what carries the scenes: all (the default), or with commas between them depth_averaged, mpm3d "
         "(3D points), structured, water, mixture (structured particles and water), staged, flood (water alone)");
     numeric(command->add_option("--seed", options.seed, "of the series; default 1"), kFromZero);
     numeric(command->add_option("--scenes", options.scenes, "at most so many; default as many as the time allows"),
@@ -326,7 +327,7 @@ void add_fuzz(CLI::App& app, FuzzOptions& options, Action& action) {
     command->add_option("--mirror", options.mirror, "that case is its own mirror image: x, y or diagonal");
     command->add_flag("--same-threads", options.same_threads, "one thread and two must give that case the same bits");
     command->add_flag("--same-resumed", options.same_resumed,
-                      "kept half way and taken up again it must end with the same bits");
+                      "saved half way and resumed it must end with the same bits");
     command->callback([&] { action = [&] { return fuzz_command(options); }; });
 }
 

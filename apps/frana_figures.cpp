@@ -167,7 +167,7 @@ void read_lines(const CaseFile& run_case, FigureSource& source, std::vector<std:
     for (Index i = 0; i < run_case.count("section"); ++i) read_section(run_case, i, source, warnings);
     source.inflows = inflow_places(run_case, source.bed.crs_wkt, warnings);
     for (Index i = 0; i < run_case.count("stage"); ++i)
-        source.in_3d |= run_case.word(fmt::format("stage.{}.model", i)) == "solid_flow";
+        source.in_3d |= run_case.word(fmt::format("stage.{}.model", i)) == "mpm3d";
 }
 
 /// An outline that has gone is left out, and all barriers with it.

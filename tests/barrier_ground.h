@@ -1,5 +1,5 @@
 #pragma once
-#include "coupling/barriers.h"
+#include "coupling/footings.h"
 
 namespace frana::test {
 

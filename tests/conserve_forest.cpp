@@ -193,27 +193,27 @@ TEST_CASE("A dense forest takes all of a thin flow: the bed has the mass of the 
 }
 
 TEST_CASE("Flow, bed and what left have the mass of the start in each step among trees", "[forest]") {
-    for (const bool hungry : {false, true})
-        for (const bool rests : {false, true})
-            for (const Sides sides : {Sides::open, Sides::wall}) {
-                INFO("hungry " << hungry << ", rests " << rests << ", walls " << (sides == Sides::wall));
-                const Scene scene = slope([&](Scene& s) {
-                    if (hungry) make_hungry(s);
-                    if (rests) s.deposition = Deposition{1.0};
-                    s.sides = sides;
-                });
-                DepthAveraged simulation(scene);
-                const Status first = simulation.frame().status;
-                double of_bed = 0.0;
-                CHECK(worst_mass_error(simulation, 6.0, &of_bed) <= 1e-13);
-                CHECK(of_bed <= 1e-13);
-                const Status now = simulation.frame().status;
-                CHECK(now.bed.deposited > 0.02 * first.mass);
-                CHECK((now.bed.eroded > 0.0) == hungry);
-                const double momentum = first.mass;  // at 1 m/s
-                for (const double residual : budget(first, now).momentum_residual)
-                    CHECK(std::abs(residual) <= 1e-11 * momentum);
-            }
+    for (const bool hungry : {false, true})  // every pair of the three
+        for (const bool rests : {false, true}) {
+            const Sides sides = hungry == rests ? Sides::open : Sides::wall;
+            INFO("hungry " << hungry << ", rests " << rests << ", walls " << (sides == Sides::wall));
+            const Scene scene = slope([&](Scene& s) {
+                if (hungry) make_hungry(s);
+                if (rests) s.deposition = Deposition{1.0};
+                s.sides = sides;
+            });
+            DepthAveraged simulation(scene);
+            const Status first = simulation.frame().status;
+            double of_bed = 0.0;
+            CHECK(worst_mass_error(simulation, 6.0, &of_bed) <= 1e-13);
+            CHECK(of_bed <= 1e-13);
+            const Status now = simulation.frame().status;
+            CHECK(now.bed.deposited > 0.02 * first.mass);
+            CHECK((now.bed.eroded > 0.0) == hungry);
+            const double momentum = first.mass;  // at 1 m/s
+            for (const double residual : budget(first, now).momentum_residual)
+                CHECK(std::abs(residual) <= 1e-11 * momentum);
+        }
 }
 
 TEST_CASE("A forest has the same bits on any number of threads, and after the run is taken up again",

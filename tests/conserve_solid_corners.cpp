@@ -83,13 +83,15 @@ std::vector<Vec3> speeds_after(const SolidScene& scene, bool adjacent) {
 
 TEST_CASE("A corner gives a point that is thrown into it no energy, and so no head above its own", "[solid][corners]") {
     // A step of velocity first loses m g^2 dt^2 / 2 and gains nothing: what is left is round-off.
+    // Every angle with every throw and hold, every throw and hold with both transfers.
     for (const Hold hold : {Hold::free, Hold::stuck})
         for (const double angle : {30.0, 45.0, 60.0, 75.0, 80.0, 90.0, 110.0, 135.0, 160.0})
             for (std::uint32_t seed = 1; seed <= 3; ++seed) {
-                CAPTURE(angle, seed, hold == Hold::stuck);
                 SolidScene scene = thrown(angle, 1, 0.0, hold, seed);
-                CHECK(gain(scene) < 1e-12);
-                scene.affine = Affine::apic;
+                const bool apic =
+                    (static_cast<std::uint32_t>(angle) / 5 + seed + (hold == Hold::stuck ? 1 : 0)) % 2 == 0;
+                if (apic) scene.affine = Affine::apic;
+                CAPTURE(angle, seed, hold == Hold::stuck, apic);
                 CHECK(gain(scene) < 1e-12);
             }
 }

@@ -58,25 +58,28 @@ double deepest(const Mpm3d& flow, const Raster& bed) {
 }  // namespace
 
 TEST_CASE("Nothing gets through ground with features a cell wide, at slopes up to 68 degrees", "[solid]") {
+    // Every pair of feature, slope and hold, and at the steepest of these and law: a point's place does not hang on it.
     for (const Feature feature : {Feature::ridge, Feature::pit, Feature::step, Feature::needle})
         for (const double degrees : {45.0, 60.0, 68.0})
-            for (const Hold hold : {Hold::free, Hold::stuck})
-                for (const SolidLaw& law : all_solid_laws()) {
-                    if (degrees < 68.0 && law.index() > 1) continue;  // the place of a point does not hang on its law
-                    CAPTURE(static_cast<int>(feature), degrees, static_cast<int>(hold), law.index());
-                    const Raster bed = ground_with(feature, degrees);
-                    SolidScene s = thrown(law, Surface::ground(bed, hold, hold == Hold::free ? 0.3 : 0.0));
-                    Mpm3d flow(s);
-                    const double mass = flow.status().mass;
-                    double worst = 0.0;
-                    while (flow.status().time < 0.4) {
-                        flow.advance(0.4);
-                        worst = std::max(worst, deepest(flow, bed));
-                    }
-                    // Points are put back along a plane that touches the ground, which bends only beside the needle.
-                    CHECK(worst < (feature == Feature::needle ? 0.01 * kCell : 1e-12));
-                    CHECK(flow.status().mass == Approx(mass).epsilon(1e-13));  // the sides are too far to leave by
+            for (const SolidLaw& law : all_solid_laws()) {
+                const std::size_t shape = static_cast<std::size_t>(feature), steep = degrees > 50.0;
+                if (degrees < 68.0 && law.index() != (shape / 2 + steep) % 2) continue;
+                const std::size_t turn = degrees < 68.0 ? steep : law.index();
+                const Hold hold = (shape + turn) % 2 == 0 ? Hold::free : Hold::stuck;
+                CAPTURE(static_cast<int>(feature), degrees, static_cast<int>(hold), law.index());
+                const Raster bed = ground_with(feature, degrees);
+                SolidScene s = thrown(law, Surface::ground(bed, hold, hold == Hold::free ? 0.3 : 0.0));
+                Mpm3d flow(s);
+                const double mass = flow.status().mass;
+                double worst = 0.0;
+                while (flow.status().time < 0.4) {
+                    flow.advance(0.4);
+                    worst = std::max(worst, deepest(flow, bed));
                 }
+                // Points are put back along a plane that touches the ground, which bends only beside the needle.
+                CHECK(worst < (feature == Feature::needle ? 0.01 * kCell : 1e-12));
+                CHECK(flow.status().mass == Approx(mass).epsilon(1e-13));  // the sides are too far to leave by
+            }
 }
 
 namespace {

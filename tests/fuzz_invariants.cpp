@@ -273,6 +273,7 @@ TEST_CASE("A falsified state is seen, by the invariant that it breaks", "[fuzz]"
     CHECK(broken_by([](Snapshot&) {}) == "");
     CHECK(broken_by([](Snapshot& s) { s.points.change[3] = kNaN; }) == "finite");
     CHECK(broken_by([](Snapshot& s) { s.now.dissipated = kNaN; }) == "finite");
+    CHECK(broken_by([](Snapshot& s) { s.now.in_3d.numerical = kNaN; }) == "finite");
     CHECK(broken_by([](Snapshot& s) { s.nodes[4].vx = kNaN; }) == "finite");
     CHECK(broken_by([](Snapshot& s) { s.points.mass[2] = -s.points.mass[2]; }) == "positive");
     CHECK(broken_by([](Snapshot& s) { s.nodes[4].depth = -1e-9; }) == "positive");

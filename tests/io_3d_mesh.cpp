@@ -313,7 +313,7 @@ TEST_CASE("Figures of a finished run show its points and its mesh when both, and
         << "[case]\ntitle = \"A block\"\n[terrain]\ndem = \"" << data << "dem.tif\"\n[[release]]\noutline = \"" << data
         << "release.geojson\"\nsurface = 9.5\n[material]\ndensity = 1000.0\n[material.bed]\nlaw = \"none\"\n"
            "[boundary]\nsides = \"wall\"\n[[stage]]\nmodel = \"depth_averaged\"\nuntil = 2.0\n[[stage]]\nmodel = "
-           "\"solid_flow\"\n"
+           "\"mpm3d\"\n"
            "cell = 0.5\nuntil = 2.6\n[[stage]]\nmodel = \"depth_averaged\"\n"
            "[[barrier]]\nmesh = \"block.obj\"\norigin = [20, -1, 5.67]\n[time]\nend = 2.8\n"
            "[output]\nevery = 0.1\nformats = [\"vtk\"]\n";

@@ -460,12 +460,11 @@ TEST_CASE("The report has the forces of what leans on a barrier from the start",
     };
     write_text(folder.path() / "water.geojson", strip(-0.4, 8));
     write_text(folder.path() / "dam.geojson", strip(8, 10));
-    write_text(
-        folder.path() / "case.toml",
-        "[terrain]\ndem = \"dem.asc\"\n[[release]]\noutline = \"water.geojson\"\ndepth = 2\n"
-        "[material]\ndensity = 1000\nbed.law = \"none\"\n[boundary]\nsides = \"wall\"\n[[stage]]\n"
-        "model = \"solid_flow\"\ncell = 0.5\n[[barrier]]\nname = \"dam\"\noutline = \"dam.geojson\"\nheight = 4\n"
-        "[time]\nend = 0.5\n[output]\nevery = 0.5\nformats = []\n");
+    write_text(folder.path() / "case.toml",
+               "[terrain]\ndem = \"dem.asc\"\n[[release]]\noutline = \"water.geojson\"\ndepth = 2\n"
+               "[material]\ndensity = 1000\nbed.law = \"none\"\n[boundary]\nsides = \"wall\"\n[[stage]]\n"
+               "model = \"mpm3d\"\ncell = 0.5\n[[barrier]]\nname = \"dam\"\noutline = \"dam.geojson\"\nheight = 4\n"
+               "[time]\nend = 0.5\n[output]\nevery = 0.5\nformats = []\n");
     const Outcome run = call_frana(folder.path(), "run case.toml --out run --quiet");
     INFO(run.err);
     REQUIRE(run.code == 0);

@@ -153,16 +153,16 @@ TEST_CASE("a checkpoint with any flipped bit is refused with one sentence", "[re
 TEST_CASE("a checkpoint that is not there, or lacks an entry, is refused", "[resume]") {
     const FreshFolder folder;
     const fs::path file = folder.path() / "checkpoint.h5";
-    CHECK_THAT(complaint(file), Contains("checkpoint.h5: not found; expected the state that a run keeps there; "
+    CHECK_THAT(complaint(file), Contains("checkpoint.h5: not found; expected the state that a run leaves there; "
                                          "run with --overwrite instead of --resume to start at the beginning"));
     write(file);
     const CheckpointFile opened(file);
     double number = 0.0;
     Index count = 0;
     CHECK_THROWS_WITH(opened.load([&](Archive& archive) { archive.number("absent", number); }),
-                      Contains("has no absent as this program keeps it"));
+                      Contains("has no absent as this program saves it"));
     CHECK_THROWS_WITH(opened.load([&](Archive& archive) { archive.number("things/number", count); }),
-                      Contains("has no things/number as this program keeps it"));
+                      Contains("has no things/number as this program saves it"));
     CHECK_THROWS_WITH(opened.load([&](Archive& archive) { archive.number("things/reals", number); }),
                       Contains("has 4 values of things/reals, expected 1"));
 }

@@ -127,7 +127,7 @@ TEST_CASE("check foretells the frames, with a remark where they are thousands", 
 
 TEST_CASE("check and run refuse 3D points that no memory holds", "[cli]") {
     const PlaneCase scene;
-    scene.write("[[stage]]\nmodel = \"solid_flow\"\nspacing = 0.001\n");
+    scene.write("[[stage]]\nmodel = \"mpm3d\"\nspacing = 0.001\n");
     for (const char* command : {"check CASE", "run CASE"}) {
         const Outcome outcome = scene.frana(command);
         CHECK(outcome.code == 2);

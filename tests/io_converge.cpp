@@ -144,8 +144,7 @@ TEST_CASE("A run says how many cells lie across the flow, and which cell would d
 TEST_CASE("converge remarks on a 3D grid that is the same on all cells", "[converge][stages]") {
     const PlaneCase scene;
     const auto said = [&](const std::string& stage) {
-        scene.write("[[stage]]\nmodel = \"solid_flow\"\nuntil = 0.05\n" + stage +
-                    "[[stage]]\nmodel = \"depth_averaged\"\n");
+        scene.write("[[stage]]\nmodel = \"mpm3d\"\nuntil = 0.05\n" + stage + "[[stage]]\nmodel = \"depth_averaged\"\n");
         const Outcome outcome = scene.frana("converge CASE --out study --cells 10,5 --overwrite --set time.end=0.1");
         REQUIRE(outcome.code == 0);
         return json_in(scene.folder() / "study" / "converge.json")["remarks"].dump();

@@ -15,6 +15,7 @@
 #include "fresh_folder.h"
 #include "io/gdal_sum.h"
 #include "program.h"
+#include "run/folder/checkpoint.h"
 #include "run/folder/run_folder.h"
 #include "run/folder/run_job.h"
 #include "run/folder/run_lock.h"
@@ -48,7 +49,7 @@ const char* const barrier = R"(
 model = "depth_averaged"
 until = 0.3
 [[stage]]
-model = "solid_flow"
+model = "mpm3d"
 window = [60, 20, 100, 80]
 [[barrier]]
 outline = "wall.geojson"
@@ -148,11 +149,25 @@ TEST_CASE("a run until some time that goes on later leaves what one run leaves",
     check_same_files(folder.out(), folder.path() / "whole");
 }
 
+TEST_CASE("a state that was left with the former word for a choice is resumed", "[resume]") {
+    const FreshFolder folder;
+    const auto labels = [](const std::string& model) {
+        return CheckpointLabels{{"version", "9.9"}, {"case", "stage.0.model = \"" + model + "\"\n"}};
+    };
+    write_checkpoint(folder.path() / "checkpoint.h5", labels("solid_flow"), [](Archive& archive) {
+        double number = 1.0;
+        archive.number("number", number);
+    });
+    CHECK_NOTHROW(open_checkpoint(folder.path(), labels("mpm3d")));
+    CHECK_THROWS_WITH(open_checkpoint(folder.path(), labels("depth_averaged")),
+                      Contains("stage.0.model is \"mpm3d\" there and \"depth_averaged\" here"));
+}
+
 TEST_CASE("what is no state of this case is refused with the reason, and the folder stays as it was", "[resume][cli]") {
     const Folder folder;
     const Outcome none = folder.run("--resume");
     CHECK(none.code == 2);
-    CHECK_THAT(none.err, Contains("out/checkpoint.h5: not found; expected the state that a run keeps there; "
+    CHECK_THAT(none.err, Contains("out/checkpoint.h5: not found; expected the state that a run leaves there; "
                                   "run with --overwrite instead of --resume to start at the beginning"));
     CHECK_FALSE(fs::exists(folder.out()));
     REQUIRE(folder.run("--until 3").code == 0);

@@ -70,7 +70,7 @@ TEST_CASE("Particles alone may have hundreds of barriers, 3D points may not", "[
     FakeGis gis = slope_gis();
     gis.polygons["houses.gpkg"] = village(64, 12, 17);
     CHECK(scene_of(with_houses("height = 6\neach = true\n"), gis).barriers.size() == 64);
-    const std::string stage = "[[stage]]\nmodel = \"solid_flow\"\nwindow = [1020, 2020, 1100, 2100]\n";
+    const std::string stage = "[[stage]]\nmodel = \"mpm3d\"\nwindow = [1020, 2020, 1100, 2100]\n";
     const std::string problem = only_problem([&] { scene_of(with_houses("height = 6\neach = true\n", stage), gis); });
     CHECK_THAT(problem, Contains("found 64 barriers") && Contains("3D points"));
 }
@@ -113,7 +113,7 @@ TEST_CASE("A top below all ground of its outline is told, wherever the corners a
 TEST_CASE("A top below all ground of its outline is refused where 3D points would meet it", "[scene][barriers]") {
     FakeGis gis = slope_gis();
     gis.polygons["houses.gpkg"] = village(2, 12, 17);  // on ground of 103.75 m and more, the second of 113.75 m
-    const std::string stage = "[[stage]]\nmodel = \"solid_flow\"\nwindow = [1005, 2000, 1100, 2100]\n";
+    const std::string stage = "[[stage]]\nmodel = \"mpm3d\"\nwindow = [1005, 2000, 1100, 2100]\n";
     const auto problem = [&](const std::string& keys) {
         return only_problem([&] { scene_of(with_houses(keys, stage), gis); });
     };
@@ -128,7 +128,7 @@ TEST_CASE("Barriers of less than three cells of a 3D stage are remarked upon, an
     gis.polygons["houses.gpkg"] = rectangle(1020, 1980, 1030, 2060);  // the terrain begins at y = 2000
     const auto scene = [&](const std::string& keys, const std::string& cell) {
         return scene_of(with_houses(keys,
-                                    "[[stage]]\nmodel = \"solid_flow\"\nwindow = [1005, 2000, 1100, 2100]\n"
+                                    "[[stage]]\nmodel = \"mpm3d\"\nwindow = [1005, 2000, 1100, 2100]\n"
                                     "cell = " +
                                         cell + "\n"),
                         gis);
@@ -214,7 +214,7 @@ TEST_CASE("Barriers that overlap, or touch along a side, are named where 3D poin
     FakeGis gis = slope_gis();
     gis.polygons["houses.gpkg"] = village(3, 12, 17);
     const std::string keys = "height = 6\neach = true\n";
-    const std::string stage = "[[stage]]\nmodel = \"solid_flow\"\nwindow = [1020, 2020, 1100, 2100]\n";
+    const std::string stage = "[[stage]]\nmodel = \"mpm3d\"\nwindow = [1020, 2020, 1100, 2100]\n";
     CHECK_FALSE(says(scene_of(with_houses(keys, stage), gis), "overlap"));
     gis.polygons["houses.gpkg"].parts[2] = rectangle(1035, 2015, 1045, 2025).parts[0];
     CHECK(says(scene_of(with_houses(keys, stage), gis), "house_2 and house_3: found barriers that overlap"));

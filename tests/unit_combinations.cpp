@@ -70,7 +70,7 @@ void complete(Sets& sets) {
 const std::string kLeast =
     "[terrain]\ndem = \"dem.tif\"\n[[release]]\ndepth = 1\n[[release]]\ndepth = 1\n[time]\nend = 1\n";
 const std::map<std::string, std::string> kTables = {
-    {"stage", "[[stage]]\nmodel = \"solid_flow\"\n"},
+    {"stage", "[[stage]]\nmodel = \"mpm3d\"\n"},
     {"inflow", "[[inflow]]\nname = \"a\"\nline = [[0, 0], [9, 0]]\nvolume = 10\n"},
     {"section", "[[section]]\nname = \"a\"\nline = [[0, 0], [9, 0]]\n"},
     {"barrier", "[[barrier]]\noutline = \"wall.geojson\"\nheight = 3\n"},

@@ -69,7 +69,7 @@ TEST_CASE("Loose ground in the window of a 3D stage and around it is firm, and a
     const Scene scene = scene_of(slope_gis(),  // nodes at 1002.5, 1007.5, ...
                                  "law = \"growth\"\ngrowth = 1e-3\ndepth = 0.5\n"
                                  "[[stage]]\nmodel = \"depth_averaged\"\nuntil = 5\n"
-                                 "[[stage]]\nmodel = \"solid_flow\"\nwindow = [1100, 2000, 1150, 2150]\ncell = 2.5\n");
+                                 "[[stage]]\nmodel = \"mpm3d\"\nwindow = [1100, 2000, 1150, 2150]\ncell = 2.5\n");
     const Raster& loose = scene.erodible->depth;
     // Nodes 20 to 29 are in the window. 2 and 3/2 cells, and 3 of 2.5 m, are 5 nodes more on each side.
     CHECK((loose.at(14, 10) == 0.5 && loose.at(15, 10) == 0.0 && loose.at(34, 10) == 0.0 && loose.at(35, 10) == 0.5));

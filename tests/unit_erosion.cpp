@@ -55,43 +55,43 @@ const ErosionLaw kLaws[] = {erosion::Growth{0.02},         erosion::Steady{0.2},
 }  // namespace
 
 TEST_CASE("Flow, bed and what left have the mass of the start, and no node lies below its rock", "[erosion]") {
-    for (const ErosionLaw& law : kLaws)
-        for (const double kappa : {0.0, 0.7})
-            for (const Sides sides : {Sides::open, Sides::wall}) {
-                INFO("law " << law.index() << ", kappa " << kappa << ", walls " << (sides == Sides::wall));
-                const Scene scene = slide([&](Scene& s) {
-                    s.erodible->law = law;
-                    s.erodible->momentum = kappa;
-                    s.sides = sides;
-                });
-                DepthAveraged simulation(scene);
-                const Status first = simulation.frame().status;
-                run(simulation, 12.0);
-                const Frame frame = simulation.frame();
-                const Budget left_over = budget(first, frame.status);
-                CHECK(std::abs(left_over.mass_error) <= 1e-13);
-                CHECK(std::abs(left_over.bed_error) <= 1e-13);
-                REQUIRE(frame.status.bed.eroded > 1e-3 * first.mass);
-                double momentum = 0.0;
-                for (const double part : frame.status.impulse) momentum = std::max(momentum, std::abs(part));
-                for (const double residual : left_over.momentum_residual) CHECK(std::abs(residual) <= 1e-11 * momentum);
-                const double *eroded = frame.node("eroded_depth")->data, *z = frame.node("elevation")->data;
-                const DepthAveraged rock([&] {
-                    Scene s = scene;
-                    s.erodible.reset();
-                    return s;
-                }());
-                const Flow& before = rock.flow();
-                double worst = 0.0, off = 0.0;
-                for (Index j = 0; j < frame.grid.ny; ++j)
-                    for (Index i = 0; i < frame.grid.nx; ++i) {
-                        const Index n = j * frame.grid.nx + i;
-                        worst = std::max({worst, eroded[n] - scene.erodible->depth.at(i, j), -eroded[n]});
-                        off = std::max(off, std::abs(z[n] + eroded[n] - before.bed.z[before.grid.at(i, j)]));
-                    }
-                CHECK(worst <= 0.0);
-                CHECK(off <= 1e-12);  // of 90 m, in some hundred steps
-            }
+    for (const ErosionLaw& law : kLaws)  // every pair of law, kappa and sides
+        for (const double kappa : {0.0, 0.7}) {
+            const Sides sides = (law.index() % 2 == 0) == (kappa == 0.0) ? Sides::open : Sides::wall;
+            INFO("law " << law.index() << ", kappa " << kappa << ", walls " << (sides == Sides::wall));
+            const Scene scene = slide([&](Scene& s) {
+                s.erodible->law = law;
+                s.erodible->momentum = kappa;
+                s.sides = sides;
+            });
+            DepthAveraged simulation(scene);
+            const Status first = simulation.frame().status;
+            run(simulation, 12.0);
+            const Frame frame = simulation.frame();
+            const Budget left_over = budget(first, frame.status);
+            CHECK(std::abs(left_over.mass_error) <= 1e-13);
+            CHECK(std::abs(left_over.bed_error) <= 1e-13);
+            REQUIRE(frame.status.bed.eroded > 1e-3 * first.mass);
+            double momentum = 0.0;
+            for (const double part : frame.status.impulse) momentum = std::max(momentum, std::abs(part));
+            for (const double residual : left_over.momentum_residual) CHECK(std::abs(residual) <= 1e-11 * momentum);
+            const double *eroded = frame.node("eroded_depth")->data, *z = frame.node("elevation")->data;
+            const DepthAveraged rock([&] {
+                Scene s = scene;
+                s.erodible.reset();
+                return s;
+            }());
+            const Flow& before = rock.flow();
+            double worst = 0.0, off = 0.0;
+            for (Index j = 0; j < frame.grid.ny; ++j)
+                for (Index i = 0; i < frame.grid.nx; ++i) {
+                    const Index n = j * frame.grid.nx + i;
+                    worst = std::max({worst, eroded[n] - scene.erodible->depth.at(i, j), -eroded[n]});
+                    off = std::max(off, std::abs(z[n] + eroded[n] - before.bed.z[before.grid.at(i, j)]));
+                }
+            CHECK(worst <= 0.0);
+            CHECK(off <= 1e-12);  // of 90 m, in some hundred steps
+        }
 }
 
 TEST_CASE("A law beyond all measure takes what is there, and mass stays exact", "[erosion]") {

@@ -171,7 +171,7 @@ TEST_CASE("What a late release cannot be is said in a sentence", "[scene][late]"
                "release.1.included_in_dem: found true with scheme.shape = \"cubic\""));
     CHECK(says(cut + "[erodible]\nlaw = \"growth\"\ndepth = 1\ngrowth = 0.01\nbed_evolves = false\n",
                "release.1.included_in_dem: found true with erodible.bed_evolves = false"));
-    const std::string stage = "[[stage]]\nmodel = \"solid_flow\"\n";
+    const std::string stage = "[[stage]]\nmodel = \"mpm3d\"\n";
     CHECK(says(kFirst + kSecond + "at = 2\n" + stage, "release.1.at: found 2 with a stage"));
     CHECK(says(kFirst + kSecond + "at = 2\n[scheme]\npreset = \"paper\"\n",
                "release.1.at: found 2 with scheme.preset = \"paper\""));

@@ -17,7 +17,7 @@ namespace {
 const std::string kCase =
     "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\nend = 20\n"
     "[material.bed]\nlaw = \"voellmy\"\nmu = 0.2\nxi = 500\n";
-const std::string kStage = "[[stage]]\nmodel = \"solid_flow\"\nwindow = [1005, 2000, 1160, 2100]\n";
+const std::string kStage = "[[stage]]\nmodel = \"mpm3d\"\nwindow = [1005, 2000, 1160, 2100]\n";
 
 Scene scene_of(const std::string& rest) { return build_scene(CaseFile::parse(kCase + rest, "case.toml"), slope_gis()); }
 

@@ -20,20 +20,22 @@ FakeGis walled_gis() {
     return gis;
 }
 
-Scene scene_of(const std::string& rest) {
+CaseFile case_of(const std::string& rest) {
     const std::string text =
         "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\n"
         "end = 20\n[material.bed]\nlaw = \"voellmy\"\nmu = 0.2\nxi = 500\n" +
         rest;
-    return build_scene(CaseFile::parse(text, "slide/case.toml"), walled_gis());
+    return CaseFile::parse(text, "slide/case.toml");
 }
+
+Scene scene_of(const std::string& rest) { return build_scene(case_of(rest), walled_gis()); }
 
 /// The one problem of a case that has exactly one; the lines of `rest` begin at 12.
 std::string problem_of(const std::string& rest) {
     return only_problem([&] { scene_of(rest); });
 }
 
-const std::string two = "[[stage]]\nmodel = \"depth_averaged\"\nuntil = 8\n[[stage]]\nmodel = \"solid_flow\"\n";
+const std::string two = "[[stage]]\nmodel = \"depth_averaged\"\nuntil = 8\n[[stage]]\nmodel = \"mpm3d\"\n";
 const std::string west = "window = [1005, 2000, 1060, 2100]\n";
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -45,7 +47,7 @@ TEST_CASE("Mud by the bed law is mud in 3D, which its bed holds or brakes", "[st
         const std::string text =
             "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"
             "[time]\nend = 20\n[material.bed]\n" +
-            bed + "[[stage]]\nmodel = \"solid_flow\"\n" + west + more;
+            bed + "[[stage]]\nmodel = \"mpm3d\"\n" + west + more;
         return build_scene(CaseFile::parse(text, "slide/case.toml"), walled_gis()).solid.value();
     };
     const std::string mud = "law = \"bingham\"\nviscosity = 20\nyield_stress = 300\n";
@@ -84,13 +86,24 @@ TEST_CASE("A 3D stage has the scene's laws where it gives none of its own", "[st
     CHECK_FALSE(stage.sound_speed.has_value());
     const Scene bingham = scene_of(
         "[material.rheology]\nlaw = \"bingham\"\nviscosity = 20\nyield_stress = 300\n[[stage]]\nmodel = "
-        "\"solid_flow\"\n" +
+        "\"mpm3d\"\n" +
         west + "viscosity = 30\n");
     CHECK(bingham.solid->from == 0.0);
     const auto& law = std::get<solid::Bingham>(bingham.solid->law);
     CHECK(law.viscosity == 30.0);
     CHECK(law.yield_stress == 300.0);
     CHECK(law.shear == 3e4);
+}
+
+TEST_CASE("The former word for 3D points means the same, and resolved cases have today's", "[stages]") {
+    const std::string stage = "[[stage]]\nmodel = \"solid_flow\"\n" + west + "bed_friction = 0.4\n";
+    const Scene scene = scene_of(stage);
+    REQUIRE(scene.solid);
+    CHECK(scene.solid->bed_friction == 0.4);
+    const std::string resolved = resolved_toml(case_of(stage));
+    CHECK(has(resolved, "model = \"mpm3d\""));
+    CHECK_FALSE(has(resolved, "solid_flow"));
+    CHECK(has(problem_of("[[stage]]\nmodel = \"solid_flaw\"\n"), "mpm3d"));
 }
 
 TEST_CASE("A window is closed where the case says so, and where it reaches walls of the terrain", "[stages]") {
@@ -112,7 +125,7 @@ TEST_CASE("A 3D stage ends where particles follow it", "[stages]") {
     CHECK(middle.from == 8.0);
     CHECK(middle.until == 12.0);
     CHECK(middle.window == std::array<Index, 4>{1, 0, 11, 19});
-    const SolidStage first = scene_of("[[stage]]\nmodel = \"solid_flow\"\nuntil = 5\n" + west + after).solid.value();
+    const SolidStage first = scene_of("[[stage]]\nmodel = \"mpm3d\"\nuntil = 5\n" + west + after).solid.value();
     CHECK(first.from == 0.0);
     CHECK(first.until == 5.0);
     CHECK_FALSE(scene_of(two + west).solid->until.has_value());
@@ -137,10 +150,9 @@ TEST_CASE("Stages that cannot be are refused in one sentence", "[stages]") {
     const Scene buried = scene_of("[[barrier]]\noutline = \"wall.geojson\"\ntop = -50\n");
     CHECK(std::any_of(buried.log.begin(), buried.log.end(),
                       [](const std::string& one) { return has(one, "barrier.0.top: found -50 m; expected more"); }));
-    CHECK(
-        has(problem_of("[[stage]]\nmodel = \"depth_averaged\"\nuntil = 25\n[[stage]]\nmodel = \"solid_flow\"\n" + west),
-            "stage.0.until: found 25 s; expected a time before time.end = 20 s"));
-    CHECK(has(problem_of("[[stage]]\nmodel = \"depth_averaged\"\n[[stage]]\nmodel = \"solid_flow\"\n" + west),
+    CHECK(has(problem_of("[[stage]]\nmodel = \"depth_averaged\"\nuntil = 25\n[[stage]]\nmodel = \"mpm3d\"\n" + west),
+              "stage.0.until: found 25 s; expected a time before time.end = 20 s"));
+    CHECK(has(problem_of("[[stage]]\nmodel = \"depth_averaged\"\n[[stage]]\nmodel = \"mpm3d\"\n" + west),
               "stage.0: not given until, and another stage follows"));
     const std::string particles = "[[stage]]\nmodel = \"depth_averaged\"\n";
     CHECK(has(problem_of(two + west + particles), "stage.1: not given until, and another stage follows"));
@@ -150,8 +162,8 @@ TEST_CASE("Stages that cannot be are refused in one sentence", "[stages]") {
               "stage.2.until: found 99 s; expected none in the last stage, or time.end = 20 s"));
     CHECK(has(problem_of("[[stage]]\nmodel = \"depth_averaged\"\nuntil = 5\n" + particles),
               "stage.1: found it after the others"));
-    CHECK(has(problem_of(two + west + "until = 12\n" + particles + "until = 15\n[[stage]]\nmodel = \"solid_flow\"\n"),
-              "stage.3: found it after the others; expected depth_averaged, then solid_flow, then depth_averaged"));
+    CHECK(has(problem_of(two + west + "until = 12\n" + particles + "until = 15\n[[stage]]\nmodel = \"mpm3d\"\n"),
+              "stage.3: found it after the others; expected depth_averaged, then mpm3d, then depth_averaged"));
     CHECK(has(problem_of(two + west + "until = 15\n"), "stage.1.until: found 15 s; expected none in the last stage"));
     CHECK(
         has(problem_of(two + west + "spacing = 3\n"), "stage.1.spacing: found 3 m; expected at most the stage's cell"));

@@ -103,8 +103,8 @@ TEST_CASE("Water with a structure reaches the scene, and what does not fit it is
     CHECK(has(problem_of_structure("[material]\ndensity = 1000.0\n" + structure + free),
               "expected grains denser than water.density = 1000"));
     CHECK(has(problem_of_structure(structure + free),
-              "material.density: not given with water.model = \"free\"; expected the density of what the water flows "
-              "beside"));
+              "material.density: not given with water.model = \"free\"; expected the density of grains with their "
+              "confined water"));
     CHECK(has(problem_of_structure(density + structure + free + "share = 1.0\n"), "water.share: found 1"));
     CHECK(
         has(problem_of_structure(density + structure + "confined_water = 1.5\n" + free), "confined_water: found 1.5"));
@@ -174,7 +174,7 @@ TEST_CASE("What does not fit a structure is refused in one sentence", "[structur
     CHECK(scene_of(structure, "unrolled = true\n").curvature == Curvature::none);
     CHECK(has(problem_of_structure(structure + "[scheme]\nshape = \"cubic\"\n"), "scheme.shape: found \"cubic\" with"));
     CHECK(has(problem_of_structure("", "unrolled = true\n"), "terrain.unrolled: found true"));
-    CHECK(has(problem_of_structure(structure + "[[stage]]\nmodel = \"solid_flow\"\n"), "found a stage with"));
+    CHECK(has(problem_of_structure(structure + "[[stage]]\nmodel = \"mpm3d\"\n"), "found a stage with"));
     CHECK(has(problem_of_structure(structure + "[[barrier]]\noutline = \"askew.geojson\"\nheight = 3\n"),
               "expected an outline that is one rectangle along x and y"));
     CHECK(scene_of(structure + "[[barrier]]\noutline = \"wall.geojson\"\nheight = 3\n").barriers.size() == 1);

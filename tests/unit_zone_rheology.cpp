@@ -261,7 +261,7 @@ TEST_CASE("What is wrong with zones and rasters of a rheology is said in one sen
             "expected keys of that law: rheology.viscosity"));
     CHECK(has(problem_of(gis, zone + "water.manning_n = 0.1\n"),
               "found, but water.friction = \"none\" does not use it; expected keys of that law: none"));
-    const std::string stage = "[[stage]]\nmodel = \"solid_flow\"\nwindow = [1020, 2020, 1100, 2100]\n";
+    const std::string stage = "[[stage]]\nmodel = \"mpm3d\"\nwindow = [1020, 2020, 1100, 2100]\n";
     CHECK(has(problem_of(gis, zone + "rheology.yield_stress = 900\n" + stage),
               "material.rheology.law: found \"bingham\" that varies from place to place, with a stage that takes its "
               "numbers"));

@@ -305,7 +305,7 @@ TEST_CASE("What is wrong with zones and rasters of friction is said in one sente
     gis.rasters["mu.tif"].at(7, 5) = 0.5;
     const std::string mud = "[material.bed]\nlaw = \"bingham\"\nviscosity = 50\nyield_stress = 500\n",
                       stage =
-                          "[[material.zone]]\nabove = 10\nyield_stress = 900\n[[stage]]\nmodel = \"solid_flow\"\n"
+                          "[[material.zone]]\nabove = 10\nyield_stress = 900\n[[stage]]\nmodel = \"mpm3d\"\n"
                           "window = [1020, 2020, 1100, 2100]\n";
     CHECK(has(problem_of(gis, mud + stage),
               "material.bed.law: found \"bingham\" that varies from place to place, with a stage; expected one yield "

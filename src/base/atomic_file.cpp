@@ -57,7 +57,7 @@ void cut_back(const std::filesystem::path& file, std::uintmax_t bytes) {
                         file.string(), failure.message()));
     if (found < bytes)
         throw UserError(
-            fmt::format("{}: found {} bytes; expected at least the {} that it had when the state was kept; "
+            fmt::format("{}: found {} bytes; expected at least the {} that it had when the state was saved; "
                         "put it back, or run with --overwrite instead of --resume",
                         file.string(), found, bytes));
     std::filesystem::resize_file(file, bytes, failure);

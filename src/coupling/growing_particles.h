@@ -1,6 +1,6 @@
 #pragma once
 // Particles on a part of a large terrain, which grows before they come near its edge.
-#include "coupling/barriers.h"
+#include "coupling/footings.h"
 #include "coupling/wrapped_simulation.h"
 #include "shallow/depth_averaged.h"
 

@@ -10,8 +10,10 @@
 #include <memory>
 #include <optional>
 
-#include "coupling/barriers.h"
+#include "coupling/barrier_watch.h"
 #include "coupling/flow_map.h"
+#include "coupling/footings.h"
+#include "coupling/particle_watch.h"
 #include "coupling/solid_scene.h"
 #include "coupling/spray.h"
 #include "coupling/stage_conversion.h"

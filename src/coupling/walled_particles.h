@@ -1,7 +1,8 @@
 #pragma once
 // Particles among barriers: they take them for ground, and what runs up and over is watched.
-#include "coupling/barriers.h"
+#include "coupling/footings.h"
 #include "coupling/growing_particles.h"
+#include "coupling/particle_watch.h"
 
 namespace frana {
 

@@ -112,7 +112,7 @@ private:
     }
     UserError stranger(const std::string& name) const {
         return UserError(
-            fmt::format("{}: has no {} as this program keeps it; it was left by another build of this "
+            fmt::format("{}: has no {} as this program saves it; it was left by another build of this "
                         "version, resume with that one or run with --overwrite instead of --resume",
                         access_.file().string(), name));
     }
@@ -149,7 +149,7 @@ void write_head(const fs::path& file) {
 void require_whole(const fs::path& file) {
     const auto damaged = [&](const std::string& what) {
         return UserError(fmt::format(
-            "{}: {}; expected the state that a run keeps there; run with --overwrite instead of --resume to start "
+            "{}: {}; expected the state that a run leaves there; run with --overwrite instead of --resume to start "
             "at the beginning",
             file.string(), what));
     };

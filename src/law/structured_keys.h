@@ -11,8 +11,8 @@ namespace frana::laws {
 inline std::vector<Key<StructuredMaterial>> structured_keys() {
     const auto degrees = [](double angle) { return angle * constants::kDegree; };
     return {{&StructuredMaterial::friction, "friction_angle_deg", "degree", Range{0.0, 90.0, true, true},
-             "internal friction angle of the structure, and of the grains it falls to; at most 60 where they push by "
-             "Rankine's coefficients",
+             "internal friction angle of the structure, and of the grains it falls to; at most 60 where their "
+             "pressure is by Rankine's coefficients",
              Missing::refused, "", degrees},
             {&StructuredMaterial::dilatancy, "dilatancy_angle_deg", "degree", Range{0.0, 90.0, false, true},
              "angle by which yielding makes room", Missing::usual, "", degrees},

@@ -184,7 +184,8 @@ void PointOrder::permute(const std::vector<PointField>& fields) {
     }
 }
 
-void PointOrder::close_gaps(const std::vector<PointField>& fields) const {
+/// Does not change the fields' lengths.
+void PointOrder::close_gaps_of(const std::vector<PointField>& fields) const {
     const Index kept = static_cast<Index>(order_.size()), count = static_cast<Index>(fields.size());
     const std::int32_t* order = order_.data();
 #pragma omp parallel for schedule(dynamic, 1) if (kept > kPointsForThreads)

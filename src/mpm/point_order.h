@@ -4,15 +4,10 @@
 #include <vector>
 
 #include "base/staggered.h"
+#include "mpm/point_set.h"
 #include "mpm/tile_grid.h"
 
 namespace frana {
-
-/// Memory that an array holds [bytes].
-template <class Values>
-Index allocated(const Values& array) {
-    return static_cast<Index>(array.capacity() * sizeof(typename Values::value_type));
-}
 
 /// An array with one number for each point.
 using PointField = std::variant<Array*, ArrayOf<float>*, std::vector<std::int64_t>*>;
@@ -44,8 +39,16 @@ public:
 
     /// Each field's number p becomes the one at order()[p].
     void permute(const std::vector<PointField>& fields);
-    /// The same when order()[p] >= p for all p: in place, without changing the fields' lengths.
-    void close_gaps(const std::vector<PointField>& fields) const;
+    template <class Points>
+    void permute_points(Points& points) {
+        permute(fields_of(points));
+    }
+    /// The same when order()[p] >= p for all p: in place.
+    template <class Points>
+    void close_gaps(Points& points) {
+        close_gaps_of(fields_of(points));
+        points.resize(static_cast<Index>(order_.size()));
+    }
 
     /// Memory that grows with the points [bytes].
     Index bytes() const { return allocated(key_) + allocated(order_) + allocated(kept_) + allocated(scratch_); }
@@ -63,6 +66,14 @@ private:
 #pragma omp parallel for schedule(static, 1) if (parts > 1)
         for (std::size_t n = 0; n < parts; ++n) body(parts_[n]);
     }
+    template <class Points>
+    const std::vector<PointField>& fields_of(Points& points) {
+        fields_.clear();
+        points.each([&](auto& array) { fields_.push_back(&array); });
+        fields_.push_back(&points.id);
+        return fields_;
+    }
+    void close_gaps_of(const std::vector<PointField>& fields) const;
     void make_room(Index count, Index tiles);
     void tally(Part& part) const;
     void lay_out(Part& part);
@@ -77,6 +88,7 @@ private:
     std::size_t parts_in_use_ = 1;           ///< small lists have one
     std::vector<std::int32_t> used_;         ///< tiles with points
     std::vector<Index> first_;               ///< of the points that stay, by position in ActiveTiles
+    std::vector<PointField> fields_;         ///< of the points that are sorted
     Array scratch_;                          ///< arrays are permuted one by one through it
 };
 

@@ -11,7 +11,7 @@
 namespace frana {
 
 inline UserError misfit(const std::string& what) {
-    return UserError("the kept state does not fit this case: " + what + "; run without --resume");
+    return UserError("the saved state does not fit this case: " + what + "; run without --resume");
 }
 
 inline void serialize_array(Archive& archive, const std::string& name, Array& array) { archive.array(name, array); }

@@ -3,6 +3,7 @@
 // tiles near material are ever used; arrays come zeroed from the system and cost nothing until then.
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -129,6 +130,29 @@ struct ActiveTiles {
 
     Index count() const { return static_cast<Index>(tile.size()); }
 };
+
+/// Makes `active` whole from its tiles and their ranges: turns, and the work list. colour_of(tile) is the same for no two
+/// tiles side by side. each_around(tile, visit) visits a tile and those around it, at most `most_around` besides it.
+template <class ColourOf, class EachAround>
+void list_work(ActiveTiles& active, Index tiles, std::size_t most_around, ColourOf&& colour_of,
+               EachAround&& each_around) {
+    active.turns.begin(active.tile, tiles, most_around);
+    active.in_work.resize(static_cast<std::size_t>(tiles));
+    for (const Index tile : active.work) active.in_work[tile] = 0;
+    active.work.clear();
+    for (const Index tile : active.tile) {
+        const Index colour = colour_of(tile);
+        active.turns.add(colour);
+        each_around(tile, [&](Index next) {
+            if (colour_of(next) < colour) active.turns.wait_for(next, active.tile);
+            if (active.in_work[next]) return;
+            active.in_work[next] = 1;
+            active.work.push_back(next);
+        });
+    }
+    active.turns.end();
+    std::sort(active.work.begin(), active.work.end());
+}
 
 /// Fewer tiles than this are not worth waking other threads for.
 constexpr Index kTilesForThreads = 8;

@@ -4,12 +4,13 @@
 
 #include "base/error.h"
 #include "observe/frame.h"
+#include "observe/status_numbers.h"
 
 namespace frana {
 
 void Archive::wrong_length(const std::string& name, std::size_t found, std::size_t expected) {
     throw UserError(
-        fmt::format("the kept state has {} values of {}, expected {}; it was left by another program, run "
+        fmt::format("the saved state has {} values of {}, expected {}; it was left by another program, run "
                     "without --resume",
                     found, name, expected));
 }
@@ -60,43 +61,7 @@ void serialize(Archive& archive, const std::string& name, Status& s) {
     const Archive::Part part(archive, name);
     archive.number("step", s.step);
     archive.number("particles", s.particles);
-    archive.numbers("numbers", {&s.time,
-                                &s.dt,
-                                &s.mass,
-                                &s.mass_left,
-                                &s.mass_in,
-                                &s.momentum[0],
-                                &s.momentum[1],
-                                &s.impulse[0],
-                                &s.impulse[1],
-                                &s.momentum_left[0],
-                                &s.momentum_left[1],
-                                &s.kinetic,
-                                &s.potential,
-                                &s.dissipated,
-                                &s.energy_left,
-                                &s.p2g_mass_error,
-                                &s.p2g_momentum_error,
-                                &s.max_depth,
-                                &s.max_speed,
-                                &s.max_speed_on_map,
-                                &s.mean_speed,
-                                &s.covered_area,
-                                &s.front,
-                                &s.stored,
-                                &s.in_3d.friction,
-                                &s.in_3d.walls,
-                                &s.in_3d.material,
-                                &s.in_3d.numerical,
-                                &s.in_3d.volume,
-                                &s.bed.initial,
-                                &s.bed.mass,
-                                &s.bed.eroded,
-                                &s.bed.deposited,
-                                &s.bed.energy,
-                                &s.bed.deepest,
-                                &s.water,
-                                &s.water_volume});
+    archive.numbers("numbers", numbers_of(s));
 }
 
 void serialize(Archive& archive, const std::string& name, std::vector<PhaseTime>& phases) {

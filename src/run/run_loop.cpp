@@ -236,7 +236,7 @@ void Loop::serialize(Archive& archive) {
         rest_.serialize(archive);
         if (archive.loading()) wall_before_ = wall;
         if (summary_.output.size() != observers_.size() + 2)
-            throw UserError("the kept state is of other observers; run without --resume");
+            throw UserError("the saved state is of other observers; run without --resume");
     }
     {
         const Archive::Part part(archive, "simulation");

@@ -114,7 +114,8 @@ std::vector<std::string> remarks_on_joined(const std::vector<Barrier>& barriers,
     for (const JoinedBarriers& pair : joined_barriers(barriers, cell))
         remarks.push_back(fmt::format(
             "{} and {}: found barriers that {}; expected {:.3g} m or more between them, a cell of the 3D stage, since "
-            "faces within, against or near the other push too: use the sum of their forces, not those of each, or draw "
+            "forces on faces within, against or near the other count too: use the sum of their forces, not those of "
+            "each, or draw "
             "both as one outline",
             barriers[pair.one].name, barriers[pair.other].name,
             pair.apart > 0.0 ? fmt::format("stand {:.3g} m apart", pair.apart) : "overlap or touch", cell));

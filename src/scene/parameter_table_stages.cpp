@@ -9,7 +9,7 @@ namespace {
 using namespace rows;
 
 const char* const model = "stage.model";
-const std::vector<std::string> in_3d = {"solid_flow"};
+const std::vector<std::string> in_3d = {"mpm3d"};
 
 Parameter of_3d(Parameter parameter, const char* otherwise) {
     return absent(with(std::move(parameter), model, in_3d), otherwise);
@@ -91,11 +91,12 @@ void add_barriers(Table& table) {
 }
 
 void add_stages(Table& table) {
-    Parameter choice_of_model = make(
-        model, Kind::choice, "",
-        "depth_averaged: particles; solid_flow: 3D points, within the stage's window; particles may come before it, "
-        "after it, or both");
-    choice_of_model.choices = {"depth_averaged", "solid_flow"};
+    Parameter choice_of_model =
+        make(model, Kind::choice, "",
+             "depth_averaged: particles; mpm3d: 3D points, within the stage's window; particles may come before it, "
+             "after it, or both");
+    choice_of_model.choices = {"depth_averaged", "mpm3d"};
+    choice_of_model.former = {{"solid_flow", "mpm3d"}};
     table.push_back(required(choice_of_model));
     table.push_back(absent(number("stage.until", "s", positive, "time at which the stage ends and the next begins"),
                            "the end of the run"));

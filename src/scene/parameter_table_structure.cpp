@@ -35,8 +35,8 @@ void add_structure(Table& table) {
                                 "share of the solids that have structure; the others are grains from the start")));
     table.push_back(
         used(choice("material.structure.earth_pressure", {"rankine", "hydrostatic"}, "rankine",
-                    "how grains push sideways: by Ka where they spread or rest and towards Kp where they are "
-                    "squeezed, or as the depth-averaged flow does, by the pressure of their weight")));
+                    "lateral pressure of grains: by Ka where they spread or rest and towards Kp where they are "
+                    "squeezed, or as in the depth-averaged flow, by the pressure of their weight")));
     table.push_back(
         used(number("material.structure.confined_water", "1", {0.0, 1.0, false, true}, 0.0,
                     "share of the particles' volume that is water within the structure; what breaks sets it "

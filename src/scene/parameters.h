@@ -1,5 +1,6 @@
 #pragma once
 // The one table of case keys. Parser, checks, `frana describe`, resolved.toml and --set all read it.
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -63,6 +64,7 @@ struct Parameter {
     std::vector<std::string> required_by = {};  ///< choices of switch_key that need this key
     std::string instead_of = {};  ///< key that says the same in another way: only one of both may be given
     std::string only_with = {};   ///< key of the same table without which this one is refused
+    std::map<std::string, std::string> former = {};  ///< words of older cases, and the choice that each means
 
     /// switch_key for the parameter's own `key`: "insitu.2.kind" for "insitu.2.field".
     std::string switch_of(const std::string& key) const;

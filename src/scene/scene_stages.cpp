@@ -19,11 +19,11 @@ public:
         Index space = count;  // the 3D one
         for (Index i = 0; i < count; ++i) {
             prefix_ = fmt::format("stage.{}.", i);
-            const bool in_3d = case_.word(prefix_ + "model") == "solid_flow";
+            const bool in_3d = case_.word(prefix_ + "model") == "mpm3d";
             if (in_3d && space == count) space = i;
             if (space < count ? i > space + 1 || (in_3d && i > space) || space > 1 : i > 0)
                 return refuse(i, "found it after the others",
-                              "expected depth_averaged, then solid_flow, then depth_averaged, or a part of that",
+                              "expected depth_averaged, then mpm3d, then depth_averaged, or a part of that",
                               "remove it; `frana convert` makes points of particles and particles of points besides");
             if (i + 1 < count && !given("until"))
                 return refuse(i, "not given until, and another stage follows",

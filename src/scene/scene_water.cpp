@@ -109,7 +109,7 @@ void refuse_endless_steps(const CaseFile& file, const WaterPhase& water, const S
 void refuse_light_grains(const CaseFile& file, const TwoPhaseMaterial& m, const Scene& scene, Problems& problems) {
     if (!file.given("material.density"))
         problems.add(file.place("material.density"), "not given with water.model = \"free\"",
-                     "expected the density of what the water flows beside, grains with their confined water",
+                     "expected the density of grains with their confined water, which the water flows around",
                      "give it, of loose rock about 2650");
     else if (m.solid_density <= m.fluid_density)
         problems.add(file.place("material.density"),

@@ -116,6 +116,7 @@ private:
         if (!value) return std::nullopt;
         const auto& choices = parameter_.choices;
         if (std::find(choices.begin(), choices.end(), *value) != choices.end()) return value;
+        if (const auto now = parameter_.former.find(*value); now != parameter_.former.end()) return now->second;
         const std::string near = closest(*value, choices);
         return wrong(node, near.empty() ? explained() : "did you mean \"" + near + "\"?");
     }

@@ -6,14 +6,6 @@
 
 namespace frana {
 
-/// All arrays of the points.
-const std::vector<PointField>& TileSorter::fields_of(Particles& particles) {
-    fields_.clear();
-    particles.each([&](auto& array) { fields_.push_back(&array); });
-    fields_.push_back(&particles.id);
-    return fields_;
-}
-
 void TileSorter::plan(const Particles& particles, const TileGrid& grid, const std::vector<std::uint8_t>& gone,
                       ActiveTiles& active) {
     order_.find_tiles(particles.count(), grid.tiles(), [&](Index p) {
@@ -25,7 +17,7 @@ void TileSorter::plan(const Particles& particles, const TileGrid& grid, const st
     list_tiles(grid, active);
 }
 
-void TileSorter::carry_out(Particles& particles) { order_.permute(fields_of(particles)); }
+void TileSorter::carry_out(Particles& particles) { order_.permute_points(particles); }
 
 /// Tiles that points leave or enter do not sleep.
 void TileSorter::wake(Index count, ActiveTiles& active) {
@@ -45,36 +37,22 @@ void TileSorter::wake(Index count, ActiveTiles& active) {
 
 void TileSorter::drop(Particles& particles, const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
     order_.retain_places(particles.count(), gone, active);
-    order_.close_gaps(fields_of(particles));
-    particles.resize(static_cast<Index>(order_.order().size()));
+    order_.close_gaps(particles);
 }
 
 void TileSorter::list_tiles(const TileGrid& grid, ActiveTiles& active) {
     constexpr std::size_t kAdjacentTiles = 8;
-    active.turns.begin(active.tile, grid.tiles(), kAdjacentTiles);
-    active.in_work.resize(static_cast<std::size_t>(grid.tiles()));
-    active.quiet.resize(static_cast<std::size_t>(grid.tiles()));
-    for (const Index tile : active.work) active.in_work[tile] = 0;
-    active.work.clear();
     const Index width = grid.tiles_x();
-    for (Index n = 0; n < active.count(); ++n) {
-        const Index tile = active.tile[n], column = tile % width, row = tile / width;
-        const auto colour = [&](Index dr, Index dc) { return ((row + dr) % 2) * 2 + (column + dc) % 2; };
-        active.turns.add(colour(0, 0));
+    const auto colour_of = [&](Index tile) { return tile / width % 2 * 2 + tile % width % 2; };
+    const auto each_around = [&](Index tile, auto&& visit) {
         for (Index dr = -1; dr <= 1; ++dr)
             for (Index dc = -1; dc <= 1; ++dc) {
-                if (column + dc < 0 || column + dc >= width) continue;
-                const Index neighbour = tile + dr * width + dc;
-                if (neighbour < 0 || neighbour >= grid.tiles()) continue;
-                if (colour(dr, dc) < colour(0, 0)) active.turns.wait_for(neighbour, active.tile);
-                if (!active.in_work[neighbour]) {
-                    active.in_work[neighbour] = 1;
-                    active.work.push_back(neighbour);
-                }
+                const Index column = tile % width + dc, next = tile + dr * width + dc;
+                if (column >= 0 && column < width && next >= 0 && next < grid.tiles()) visit(next);
             }
-    }
-    active.turns.end();
-    std::sort(active.work.begin(), active.work.end());
+    };
+    list_work(active, grid.tiles(), kAdjacentTiles, colour_of, each_around);
+    active.quiet.resize(static_cast<std::size_t>(grid.tiles()));
     list_runs(width, active);
 }
 

@@ -7,6 +7,7 @@
 #include "base/staggered.h"
 #include "mpm/domain.h"
 #include "mpm/point_order.h"
+#include "mpm/point_set.h"
 #include "mpm/tile_grid.h"
 
 namespace frana {
@@ -20,22 +21,19 @@ struct Carried {
     ArrayOf<Real> depth;               ///< sampled from the nodes (paper preset: carried) [m]
 
     template <class Self, class Visit>
-    static void each(Self& s, Visit&& visit) {
+    static void visit_arrays(Self& s, Visit&& visit) {
         for (auto* array : {&s.vx, &s.vy, &s.cxx, &s.cxy, &s.cyx, &s.cyy, &s.r1x, &s.r1y, &s.r2x, &s.r2y, &s.depth})
             visit(*array);
     }
 };
 
-/// Particles, each a column of material. Positions and domain edges are in cells (from node (0, 0)); all else is SI.
-/// Positions and masses are always in double precision: a step moves a point by little, and mass is exact.
-struct Particles : Carried<double> {
+/// Arrays of particles, each a column of material. Positions and domain edges are in cells (from node (0, 0)); all else
+/// is SI. Positions and masses are always in double precision: a step moves a point by little, and mass is exact.
+struct ParticleArrays : Carried<double> {
     Array x, y;             ///< position [cells]
     Array mass;             ///< [kg]
     Carried<float> narrow;  ///< with scheme.precision = "float" instead of the base's arrays, which are empty then
-    std::vector<std::int64_t> id;  ///< constant through sorting; children of a split get new ones
-    bool single = false;           ///< what points carry is in `narrow`
-
-    Index count() const { return static_cast<Index>(x.size()); }
+    bool single = false;    ///< what points carry is in `narrow`
 
     template <class Real>
     Carried<Real>& carried() {
@@ -56,40 +54,20 @@ struct Particles : Carried<double> {
     auto with_real(Work&& work) const {
         return single ? work(float{}) : work(double{});
     }
-
-    /// The one list of floating-point arrays in use, for sorting and growing.
-    template <class Visit>
-    void each(Visit&& visit) {
-        each_of(*this, visit);
-    }
-    template <class Visit>
-    void each(Visit&& visit) const {
-        each_of(*this, visit);
-    }
     /// Point p loses half of all that is counted and not shared.
     void halve(Index p) { mass[p] *= 0.5; }
-    Index bytes() const {
-        Index sum = allocated(id);
-        each([&](const auto& array) { sum += allocated(array); });
-        return sum;
-    }
-    void resize(Index count) {
-        each([&](auto& array) { resize_sparingly(array, static_cast<std::size_t>(count)); });
-        resize_sparingly(id, static_cast<std::size_t>(count));
-    }
 
-private:
     template <class Self, class Visit>
-    static void each_of(Self& s, Visit& visit) {
+    static void visit_arrays(Self& s, Visit&& visit) {
         visit(s.x), visit(s.y), visit(s.mass);
         if (s.single)
-            Carried<float>::each(s.narrow, visit);
+            Carried<float>::visit_arrays(s.narrow, visit);
         else
-            Carried<double>::each(
-                static_cast<std::conditional_t<std::is_const_v<Self>, const Carried<double>, Carried<double>>&>(s),
-                visit);
+            Carried<double>::visit_arrays(s, visit);
     }
 };
+
+using Particles = PointSet<ParticleArrays>;
 
 /// A particle that left at an exit where that is noted, as it was when it left.
 struct Departed {
@@ -130,10 +108,8 @@ public:
 private:
     void wake(Index count, ActiveTiles& active);
     static void list_runs(Index width, ActiveTiles& active);
-    const std::vector<PointField>& fields_of(Particles& particles);
 
     PointOrder order_;
-    std::vector<PointField> fields_;
 };
 
 }  // namespace frana

@@ -3,13 +3,14 @@
 #include <array>
 
 #include "mpm/point_order.h"
+#include "mpm/point_set.h"
 #include "solid3d/grid3d.h"
 
 namespace frana {
 
-/// 3D points. Positions are in cells from node (0, 0, 0); all else is SI. A law has up to six numbers
+/// Arrays of 3D points. Positions are in cells from node (0, 0, 0); all else is SI. A law has up to six numbers
 /// of its own for each point (law/solid/laws.h). Arrays that no law needs are empty.
-struct MaterialPoints {
+struct MaterialArrays {
     std::array<Array, 3> x;         ///< position [cells]
     std::array<Array, 3> v;         ///< velocity [m/s]
     std::array<Array, 9> gradient;  ///< of the velocity, dv_k/dx_l at 3 l + k [1/s]
@@ -18,33 +19,18 @@ struct MaterialPoints {
     Array j;                        ///< volume over rest_volume [1]
     std::array<Array, 7> state;     ///< of the law
     int states = 0;                 ///< of them in use
-    std::vector<std::int64_t> id;   ///< constant through sorting
 
-    Index count() const { return static_cast<Index>(mass.size()); }
-
-    /// The one list of floating-point arrays in use, for sorting, growing and serializing.
-    template <class Visit>
-    void each(Visit&& visit) {
-        for (Array& array : x) visit(array);
-        for (Array& array : v) visit(array);
-        for (Array& array : gradient) visit(array);
-        visit(mass), visit(rest_volume), visit(j);
-        for (int n = 0; n < states; ++n) visit(state[static_cast<std::size_t>(n)]);
-    }
-    /// Memory of all of them.
-    Index bytes() const {
-        Index sum = allocated(mass) + allocated(rest_volume) + allocated(j) + allocated(id);
-        const auto add = [&](const auto& arrays) {
-            for (const Array& array : arrays) sum += allocated(array);
-        };
-        add(x), add(v), add(gradient), add(state);
-        return sum;
-    }
-    void resize(Index count) {
-        each([&](Array& array) { resize_sparingly(array, static_cast<std::size_t>(count)); });
-        resize_sparingly(id, static_cast<std::size_t>(count));
+    template <class Self, class Visit>
+    static void visit_arrays(Self& s, Visit&& visit) {
+        for (auto& array : s.x) visit(array);
+        for (auto& array : s.v) visit(array);
+        for (auto& array : s.gradient) visit(array);
+        visit(s.mass), visit(s.rest_volume), visit(s.j);
+        for (int n = 0; n < s.states; ++n) visit(s.state[static_cast<std::size_t>(n)]);
     }
 };
+
+using MaterialPoints = PointSet<MaterialArrays>;
 
 /// Sorts points by the tile of their first node.
 class Sorter3d {
@@ -58,7 +44,6 @@ public:
 
 private:
     PointOrder order_;
-    std::vector<PointField> fields_;
 };
 
 }  // namespace frana

@@ -10,7 +10,7 @@ void Mpm3d::set_adjacent(GhostParticles material) {
     const std::size_t count = seeds.mass.size();
     expect(seeds.position.size() == count && seeds.velocity.size() == count && seeds.pressure.size() == count &&
                material.gradient.size() == count,
-           "material beside points has a place, a velocity with its gradient and a pressure each");
+           "ghost particles have a place, a velocity with its gradient and a pressure each");
     if (count > 0)
         make_room_for_ghosts();
     else

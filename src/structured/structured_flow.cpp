@@ -129,10 +129,7 @@ void StructuredFlow::sort() {
         return body_.grid.tile_of(q.x[p], q.y[p]);
     });
     order_.lay_out(body_.active);
-    fields_.clear();
-    q.each([&](Array& array) { fields_.push_back(&array); });
-    fields_.push_back(&q.id);
-    order_.permute(fields_);
+    order_.permute_points(q);
     drift_ = 0.0;
     take_tiles();
 }
@@ -278,12 +275,7 @@ Vec2 StructuredFlow::position(Index p) const {
     return {g.x0 + g.cell * body_.points.x[p], g.y0 + g.cell * body_.points.y[p]};
 }
 
-Index StructuredFlow::particle_bytes() const {
-    const StructuredPoints& q = body_.points;
-    Index sum = allocated(q.id) + order_.bytes();
-    q.each([&](const Array& array) { sum += allocated(array); });
-    return sum;
-}
+Index StructuredFlow::particle_bytes() const { return body_.points.bytes() + order_.bytes(); }
 
 Vec2 StructuredFlow::momentum_residual() const {
     return status_.momentum + status_.momentum_left - status_.momentum_given - status_.impulse.sum();

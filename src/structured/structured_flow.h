@@ -12,6 +12,7 @@
 #include "law/structured_law.h"
 #include "mpm/halving.h"
 #include "mpm/ledger.h"
+#include "mpm/point_order.h"
 #include "mpm/step_clock.h"
 #include "observe/frame.h"
 #include "shallow/creep_filter.h"
@@ -255,7 +256,6 @@ private:
     Ground ground_;
     PointOrder order_;
     TileSorter lists_;  ///< of tiles, and their turns
-    std::vector<PointField> fields_;
     std::function<BedGeometry(const TileGrid&)> bed_;
     HalvingRules rules_;
     Halves halves_;

@@ -43,7 +43,7 @@ height = 5.0
 model = "depth_averaged"
 until = 4.5
 [[stage]]
-model = "solid_flow"
+model = "mpm3d"
 window = [60, 0, 100, {width}]
 cell = {cell}
 """

@@ -209,5 +209,5 @@ def sentence(ended):
     if ended.code < 0 and ended.stopped:
         return "canceled; what it wrote before may be resumed" if ended.began() else "canceled before the run began"
     if ended.code < 0:
-        return f"the program was ended by signal {-ended.code}; its last kept state can be resumed"
+        return f"the program was ended by signal {-ended.code}; its last saved state can be resumed"
     return f"a mistake of frana (exit code {ended.code}): {said}; please report it with the case"

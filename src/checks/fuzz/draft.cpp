@@ -96,7 +96,7 @@ const char* word_of(Model model) {
         case Model::depth_averaged:
             return "depth_averaged";
         case Model::mpm3d:
-            return "solid_flow";
+            return "mpm3d";
         case Model::structured:
             return "structured";
         case Model::water:
@@ -111,6 +111,15 @@ const char* word_of(Model model) {
     throw InternalError("unknown model");
 }
 
+namespace {
+
+/// 3D points had another word once, which is still taken.
+bool is_word_of(Model model, const std::string& word) {
+    return word == word_of(model) || (model == Model::mpm3d && word == "solid_flow");
+}
+
+}  // namespace
+
 std::vector<Model> models_of(const std::string& words) {
     if (words == "all") return all_models();
     std::vector<Model> models;
@@ -118,10 +127,10 @@ std::vector<Model> models_of(const std::string& words) {
     for (std::string word; std::getline(in, word, ',');) {
         const std::size_t before = models.size();
         for (const Model model : all_models())
-            if (word == word_of(model)) models.push_back(model);
+            if (is_word_of(model, word)) models.push_back(model);
         if (models.size() == before)
             throw UserError(
-                fmt::format("--model: found \"{}\"; expected all, or some of depth_averaged, solid_flow, "
+                fmt::format("--model: found \"{}\"; expected all, or some of depth_averaged, mpm3d, "
                             "structured, water, mixture, staged, flood with commas between; choose of these",
                             word));
     }

@@ -72,7 +72,7 @@ double draw_3d(Dice& dice, Draft& draft, const std::string& stage) {
     double cell = terrain_cell * dice.one_of({0.4, 0.5, 0.5, 0.7, 1.0});
     const double share = dice.one_of({0.5, 0.5, 0.5, 0.34, 0.7});
     cell = std::max(cell, std::cbrt(of.volume / most) / share);
-    say(draft, key(stage, "model"), "solid_flow");
+    say(draft, key(stage, "model"), "mpm3d");
     say(draft, key(stage, "cell"), cell);
     say(draft, key(stage, "spacing"), share * cell);
     draw_law(dice, draft, stage, of);

@@ -8,6 +8,7 @@
 
 #include "base/compensated_sum.h"
 #include "observe/budget.h"
+#include "observe/status_numbers.h"
 
 namespace frana::fuzz {
 namespace {
@@ -19,14 +20,6 @@ double sum_of(const std::vector<double>& values) {
     CompensatedSum sum;
     for (const double value : values) sum.add(value);
     return sum.value();
-}
-
-std::vector<double> numbers_of(const Status& s) {
-    return {s.time,       s.dt,           s.mass,         s.mass_left, s.momentum[0],      s.momentum[1],
-            s.impulse[0], s.impulse[1],   s.kinetic,      s.potential, s.momentum_left[0], s.momentum_left[1],
-            s.dissipated, s.energy_left,  s.max_depth,    s.max_speed, s.p2g_mass_error,   s.p2g_momentum_error,
-            s.mean_speed, s.covered_area, s.front,        s.stored,    s.bed.mass,         s.bed.eroded,
-            s.bed.energy, s.bed.deepest,  s.bed.deposited};
 }
 
 /// Mass of points whose sub-points an open side may hold back [kg]: those within 3/4 of a cell (shallow/sub_points.h).
@@ -117,8 +110,8 @@ std::optional<Violation> Watch::finite(const Snapshot& state) {
         for (const double value : *array) sample(value);
     for (const NodeState& node : state.nodes)
         for (const double value : {node.depth, node.surface, node.vx, node.vy, node.speed}) sample(value);
-    for (const Status* status : {&state.between, &state.now})
-        for (const double value : numbers_of(*status)) sample(value);
+    for (Status status : {state.between, state.now})
+        for (const double* value : numbers_of(status)) sample(*value);
     sample(state.max_speed);
     return judged("finite", static_cast<double>(bad), 0.0, state, "numbers that are not finite");
 }

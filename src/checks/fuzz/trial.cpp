@@ -73,7 +73,7 @@ void compare_bits(const Scene& scene, const Claims& claims, Verdict& verdict) {
                 verdict);
     if (claims.resumes && !verdict.broken)
         compare("resume", bits, run_with_pause(scene, verdict.steps),
-                "a run that was kept half way and taken up again ends with different bits", verdict);
+                "a run that was saved half way and resumed ends with different bits", verdict);
 }
 
 /// kDisturbed times the round-off of the surface over the depth, but at most what decides a tie (shallow/merge.cpp).

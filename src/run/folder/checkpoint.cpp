@@ -105,6 +105,19 @@ std::map<std::string, std::string> lines_of(const std::string& text) {
     return keys;
 }
 
+/// The case of a state that was left when choices had other words.
+std::string in_todays_words(const std::string& text) {
+    std::string result;
+    for (const auto& [key, value] : lines_of(text)) {
+        std::string now = value;
+        if (const Parameter* parameter = find_parameter(key))
+            for (const auto& [former, choice] : parameter->former)
+                if (value == '"' + former + '"') now = '"' + choice + '"';
+        result += fmt::format("{} = {}\n", key, now);
+    }
+    return result;
+}
+
 /// "material.bed.mu is 0.4 there and 0.5 here", the first key that differs.
 std::string difference(const std::string& there, const std::string& here) {
     auto kept = lines_of(there), given = lines_of(here);
@@ -145,8 +158,8 @@ void require_same(const fs::path& file, const CheckpointLabels& there, const Che
                 fmt::format("found a state of {} {}; expected {} {}", name, label(there, name), name,
                             label(here, name)),
                 std::string(name) == "version" ? "use the program that left it" : "give scheme.precision as it was");
-    if (differs("case"))
-        throw refused("found the state of another case: " + difference(label(there, "case"), label(here, "case")),
+    if (const std::string its = in_todays_words(label(there, "case")); its != in_todays_words(label(here, "case")))
+        throw refused("found the state of another case: " + difference(its, label(here, "case")),
                       "give the case and the --set it was left with");
     const std::string input = changed_input(label(there, "inputs"), label(here, "inputs"));
     if (!input.empty())

@@ -234,7 +234,7 @@ std::string missing_for(const std::string& state, const fs::path& run_dir, const
     std::string lacks = lacks_arrays(seen, {"depth", "surface", "speed"}, all);
     if (state == "impact" && !fs::exists(run_dir / "barriers.pvd"))
         return "no 3D points stood before a barrier; give a [[barrier]] and a [[stage]] with model = "
-               "\"solid_flow\"";
+               "\"mpm3d\"";
     if (state == "impact" && !have_height(run_dir))
         return "an earlier version wrote the barriers without to_true_height; run the case again";
     if (state == "stress" && lacks.empty())

@@ -58,7 +58,8 @@ constexpr ProductRule rules[] = {
     {kLying, "deposited_depth", 0, kMetres, kLiesThere},
     {"bed_change", "bed_change", 0, "m", "deposited depth less eroded depth"},
     {kFinalElevation, kElevation, 0, kMetres, kGroundAtEnd, false},
-    {"final_damage", "damage", 0, "1", "damage at the end of the run: 0 whole, 1 grains; where material lies", false},
+    {"final_damage", "damage", 0, "1", "damage at the end of the run: 0 intact, 1 fragmented; where material lies",
+     false},
     {"final_water_depth", "water_depth", 0, "m", "depth of free water at the end of the run, along gravity"},
 };
 

@@ -214,8 +214,8 @@ std::string budgets(const RunRecord& r) {
     if (points.friction != 0.0 || points.walls != 0.0 || points.material != 0.0 || points.numerical != 0.0)
         text += fmt::format(
             "3D points hold {:.4g} J by their deformation. Of what was dissipated they lost {:.4g} J by friction "
-            "along the bed and barriers, {:.4g} J to their pushes, {:.4g} J inside the material, and {:.4g} J to the "
-            "scheme, which is what is left.\n\n",
+            "along the bed and barriers, {:.4g} J to their normal forces, {:.4g} J inside the material, and {:.4g} J "
+            "to the scheme, which is what is left.\n\n",
             s.last.stored, points.friction, points.walls, points.material, points.numerical);
     return text;
 }
@@ -298,11 +298,9 @@ std::string barriers_of_structure(const RunRecord& r) {
     const Breakage& of = *r.extras.breakage;
     return text +
            fmt::format(
-               "\nStructured particles meet a barrier as an upright box of any height, which pushes and rubs. Since "
-               "the "
-               "start all barriers, with the walls along closed sides, took an impulse of {:.4g} N s in x and {:.4g} N "
-               "s "
-               "in y. What each of them took, contact times and run-up are not measured.\n\n",
+               "\nStructured particles meet a barrier as an upright box of any height, with normal force and friction. "
+               "Since the start all barriers, with the walls along closed sides, took an impulse of {:.4g} N s in x "
+               "and {:.4g} N s in y. What each of them took, contact times and run-up are not measured.\n\n",
                of.pushed[0], of.pushed[1]);
 }
 
