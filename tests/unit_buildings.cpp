@@ -122,7 +122,7 @@ TEST_CASE("A top below all ground of its outline is refused where 3D points woul
     CHECK(scene_of(with_houses("top = 108\n", stage), gis).barriers.size() == 1);
 }
 
-TEST_CASE("Barriers of less than three cells of a 3D stage are remarked upon, and what is beyond the terrain",
+TEST_CASE("Barriers lower than a cell of a 3D stage are remarked upon, and what is beyond the terrain",
           "[scene][barriers]") {
     FakeGis gis = slope_gis();
     gis.polygons["houses.gpkg"] = rectangle(1020, 1980, 1030, 2060);  // the terrain begins at y = 2000
@@ -133,9 +133,9 @@ TEST_CASE("Barriers of less than three cells of a 3D stage are remarked upon, an
                                         cell + "\n"),
                         gis);
     };
-    const std::string low = "house stands 4 m high, 2 cells of the 3D stage; expected 3 or more";
-    CHECK(says(scene("height = 4\n", "2.0"), low));
-    CHECK_FALSE(says(scene("height = 4\n", "1.0"), "m high"));
+    const std::string low = "house stands 1.5 m high, 0.75 cells of the 3D stage; expected 1 or more";
+    CHECK(says(scene("height = 1.5\n", "2.0"), low));
+    CHECK_FALSE(says(scene("height = 4\n", "2.0"), "m high"));
     CHECK_FALSE(says(scene_of(with_houses("height = 4\n"), gis), "m high"));  // to particles it is ground
     // 10 m of one end and 20 m of both sides, of 180 m around it.
     CHECK(says(scene("height = 4\n", "1.0"), "28 % of the foot of house lie beyond the terrain"));

@@ -52,7 +52,7 @@ SolidBody::SolidBody(const SolidScene& scene)
     if (!surfaces.empty()) real = LazyArray<Node>(grid.size());
     for (std::size_t s = 0; s < surfaces.size(); ++s)
         if (surfaces[s].is_barrier()) barriers |= SurfaceSet{1} << s;
-    if (barriers != 0) mirror_force = LazyArray<Node>(grid.size());
+    if (barriers != 0) mirror_force = LazyArray<Node>(grid.size()), on_barriers = LazyArray<Node>(grid.size());
     Vec3 high = scene.grid.origin;
     for (int k = 0; k < 3; ++k) high[k] += scene.grid.cell * static_cast<double>(scene.grid.nodes[k] - 1);
     ledger = FaceLedger(surfaces, scene.grid.origin, high, scene.grid.cell);

@@ -142,6 +142,7 @@ struct SolidBody {
 
     LazyArray<Node> nodes, real;   ///< real: without mirror particles, near surfaces
     LazyArray<Node> mirror_force;  ///< of the step, near barriers: impulse of their mirror particles' stress [kg m/s]
+    LazyArray<Node> on_barriers;   ///< of the step, near barriers: of `real`, what stands on one above the ground
     /// Material adjacent to the points, which contributes to the nodes like them. `real` has it too.
     struct Ghosts {
         GhostParticles material;
@@ -155,6 +156,7 @@ struct SolidBody {
             Vec3 momentum;
             Mat3 affine, force;
             MirrorParticle mirror;
+            bool on_barrier;  ///< a seed that stands on one above the ground
         };
         std::vector<Shown> seeds, mirrors;
         LazyArray<Node> own;                ///< of the points alone, in tiles that it reaches

@@ -15,6 +15,7 @@
 namespace frana {
 namespace {
 
+constexpr double kRounding = 1e-9;     ///< of sums over points, a generous share
 constexpr double kLongestShift = 1.0;  ///< of a point in a step [cells]: the time step allows its cfl
 
 /// A point's 27 nodes in the grid, for mirror particles: they lie anywhere.
@@ -38,6 +39,18 @@ struct Stencil3d {
 /// What a point gives its nodes: w (base + affine d) + force grad w; lanes are mass and momentum.
 struct Contribution {
     Double4 base, affine[3], force[3];
+    /// To one of the nodes.
+    template <class Stencil>
+    [[gnu::always_inline]] Double4 at(const Stencil& s, int i, int j, int k) const {
+        return s.w[0][i] * s.w[1][j] * s.w[2][k] *
+                   (base + affine[0] * s.d[0][i] + affine[1] * s.d[1][j] + affine[2] * s.d[2][k]) +
+               force_at(s, i, j, k);
+    }
+    template <class Stencil>
+    [[gnu::always_inline]] Double4 force_at(const Stencil& s, int i, int j, int k) const {
+        return (s.slope[0][i] * s.w[1][j] * s.w[2][k]) * force[0] + (s.w[0][i] * s.slope[1][j] * s.w[2][k]) * force[1] +
+               (s.w[0][i] * s.w[1][j] * s.slope[2][k]) * force[2];
+    }
 };
 
 /// flip: points retain their velocities and get the changes of the nodes' ones (mpm3d.h).
@@ -89,7 +102,9 @@ public:
         for_each_work_tile(body.active, [&](Index n, Index tile) {
             const SurfaceSet near = body.near_nodes[static_cast<std::size_t>(n)];
             if (near != 0) std::copy_n(&body.nodes[tile * kTileNodes], kTileNodes, &body.real[tile * kTileNodes]);
-            if (near & body.barriers) std::fill_n(&body.mirror_force[tile * kTileNodes], kTileNodes, SolidBody::Node{});
+            if (!(near & body.barriers)) return;
+            std::fill_n(&body.mirror_force[tile * kTileNodes], kTileNodes, SolidBody::Node{});
+            std::fill_n(&body.on_barriers[tile * kTileNodes], kTileNodes, SolidBody::Node{});
         });
         const double h = body.grid.cell();
         const Vec3& origin = body.grid.geometry().origin;
@@ -100,6 +115,7 @@ public:
                 const Vec3 x = position(body, p);
                 const MirrorParticles mirrors(body.surfaces, body.near_points[static_cast<std::size_t>(n)],
                                               origin + h * x, h);
+                if (mirrors.stands_on_barrier()) give_to(body.on_barriers, body, p, dt);
                 for (const MirrorParticle& mirror : mirrors) {
                     const Vec3 place = (mirror.place - origin) / h;
                     const Vec3 shift = (place - x).cwiseAbs();
@@ -132,12 +148,14 @@ public:
             });
         };
         copy(ghosts.own);
-        for (const auto& shown : ghosts.seeds) add_ghost(body, shown);
+        for (const auto& shown : ghosts.seeds) add_ghost(body, shown, body.nodes);
         copy(body.real);
     }
 
     void scatter_ghost_mirrors(SolidBody& body) const override {
-        for (const auto& shown : body.ghosts.mirrors) add_ghost(body, shown);
+        for (const auto& shown : body.ghosts.seeds)
+            if (shown.on_barrier) add_ghost(body, shown, body.on_barriers);
+        for (const auto& shown : body.ghosts.mirrors) add_ghost(body, shown, body.nodes);
     }
 
     void move_nodes(SolidBody& body) const override {
@@ -254,15 +272,25 @@ private:
             if (!mirror.shows_at(origin + body.grid.cell() * place + d)) continue;
             const double w = s.w[0][i] * s.w[1][j] * s.w[2][k];
             const Index at = s.place[0][i] + s.place[1][j] + s.place[2][k];
-            const Double4 force = (s.slope[0][i] * s.w[1][j] * s.w[2][k]) * contribution.force[0] +
-                                  (s.w[0][i] * s.slope[1][j] * s.w[2][k]) * contribution.force[1] +
-                                  (s.w[0][i] * s.w[1][j] * s.slope[2][k]) * contribution.force[2];
+            const Double4 force = contribution.force_at(s, i, j, k);
             SolidBody::Node *const node = &body.nodes[at], *const pressure = &body.mirror_force[at];
             store(node, load(node) +
                             w * (contribution.base + contribution.affine[0] * d[0] + contribution.affine[1] * d[1] +
                                  contribution.affine[2] * d[2]) +
                             force);
             store(pressure, load(pressure) + force);
+        }
+    }
+
+    /// A point gives its mass and momentum to other sums at its nodes too.
+    [[gnu::noinline]] void give_to(LazyArray<SolidBody::Node>& sums, const SolidBody& body, Index p, double dt) const {
+        const Point point(*this, body, p);
+        const Contribution contribution = contribution_of(point, point.v + dt * body.gravity, dt);
+        const Stencil3d<affine> s(body.grid, point.x);
+        for (int n = 0; n < 27; ++n) {
+            const int i = n % 3, j = n / 3 % 3, k = n / 9;
+            SolidBody::Node* const node = &sums[s.place[0][i] + s.place[1][j] + s.place[2][k]];
+            store(node, load(node) + contribution.at(s, i, j, k));
         }
     }
 
@@ -280,14 +308,17 @@ private:
             const Mat3 motion = seeds.mass[p] * ghosts.material.gradient[p];
             const Mat3 force = dt * seeds.pressure[p] * seeds.mass[p] / body.density * Mat3::Identity();
             const Vec3 place = (x - origin) / h;
-            if (felt(body, place)) ghosts.seeds.push_back({place, seeds.mass[p], momentum, motion, force, {}});
-            for (const MirrorParticle& mirror : MirrorParticles(body.surfaces, ghosts.near[p], x, h)) {
+            const MirrorParticles mirrors(body.surfaces, ghosts.near[p], x, h);
+            if (felt(body, place))
+                ghosts.seeds.push_back(
+                    {place, seeds.mass[p], momentum, motion, force, {}, mirrors.stands_on_barrier()});
+            for (const MirrorParticle& mirror : mirrors) {
                 const Vec3 shown = (mirror.place - origin) / h;
                 if ((shown - place).cwiseAbs().maxCoeff() > kFarthestMirror || !felt(body, shown)) continue;
                 ghosts.mirrors.push_back(
                     {shown, mirror.share * seeds.mass[p], mirror.share * (mirror.motion * momentum),
                      mirror.share * (mirror.motion * mirror.without_shear(motion) * mirror.turn.transpose()),
-                     mirror.share * (mirror.motion * force * mirror.turn.transpose()), mirror});
+                     mirror.share * (mirror.motion * force * mirror.turn.transpose()), mirror, false});
             }
         }
     }
@@ -319,7 +350,7 @@ private:
         }
     }
 
-    static void add_ghost(SolidBody& body, const SolidBody::Ghosts::Shown& shown) {
+    static void add_ghost(SolidBody& body, const SolidBody::Ghosts::Shown& shown, LazyArray<SolidBody::Node>& nodes) {
         const Stencil3d<affine> s(body.grid, shown.place);
         const Vec3& origin = body.grid.geometry().origin;
         for (int n = 0; n < 27; ++n) {
@@ -330,7 +361,7 @@ private:
             const Vec3 slope(s.slope[0][i] * s.w[1][j] * s.w[2][k], s.w[0][i] * s.slope[1][j] * s.w[2][k],
                              s.w[0][i] * s.w[1][j] * s.slope[2][k]);
             const Index at = s.place[0][i] + s.place[1][j] + s.place[2][k];
-            SolidBody::Node& node = body.nodes[at];
+            SolidBody::Node& node = nodes[at];
             const Vec3 force = shown.force * slope, given = w * (shown.momentum + shown.affine * d) + force;
             if (shown.mirror.of_barrier) {
                 SolidBody::Node& pressure = body.mirror_force[at];
@@ -392,6 +423,8 @@ private:
     static int touched(const SolidBody& body, SurfaceSet near, Index node, const Vec3& x, const Vec3& mixed,
                        Touch* list) {
         int count = 0;
+        const bool all_on_barriers =
+            (near & body.barriers) && body.on_barriers[node].m >= (1.0 - kRounding) * body.real[node].m;
         for (; near != 0 && count < kMostTouched; near &= near - 1) {
             const int s = __builtin_ctz(near);
             if (body.barriers >> s & 1) {
@@ -400,10 +433,65 @@ private:
             }
             const Contact c = contact(body.surfaces[static_cast<std::size_t>(s)], x);
             if (c.distance > 0.5 * mirror_reach(c.normal) * body.grid.cell()) continue;
+            if (all_on_barriers && is_floor(c.normal)) continue;
             const double asked = mixed.dot(c.normal);
             list[count++] = {s, c, c.distance <= 0.0 ? std::max(asked, 0.0) : asked};
         }
         return count;
+    }
+
+    /// Where the ground and the top of a low barrier reach a node both, it meets them as one. How much each of them
+    /// gives is not told by their normals. It follows from what the material needs that stands on each.
+    struct Shared {
+        int ground = -1, top = -1;  ///< in the list of touches; top: -1 where there is none
+        double of_top = 0.0;        ///< [1]
+        Touch apart[2];
+    };
+    static Vec3 momentum(const SolidBody::Node& node) { return {node.x, node.y, node.z}; }
+
+    static Shared ground_and_top(const SolidBody& body, const Touch* list, int count) {
+        Shared shared;
+        for (int n = 0; n < count; ++n)
+            if (!(body.barriers >> list[n].surface & 1) && is_floor(list[n].contact.normal)) shared.ground = n;
+        double nearest = kSameFace;
+        for (int n = 0; n < count && shared.ground >= 0; ++n) {
+            const double along = list[n].contact.normal.dot(list[shared.ground].contact.normal);
+            if ((body.barriers >> list[n].surface & 1) && along > nearest) shared.top = n, nearest = along;
+        }
+        return shared;
+    }
+
+    [[gnu::noinline]] static Shared share_ground(const SolidBody& body, Index node, const SolidBody::Node& real,
+                                                 Touch* list, int& count) {
+        const SolidBody::Node& on = body.on_barriers[node];
+        Shared shared;
+        if (on.m > 0.0) shared = ground_and_top(body, list, count);
+        if (shared.top < 0) return shared;
+        Touch &ground = list[shared.ground], &top = list[shared.top];
+        shared.apart[0] = ground, shared.apart[1] = top;
+        ground.least = std::max(ground.least, top.least);
+        const auto needed = [&](double mass, const Vec3& has, const Touch& from) {
+            return std::max(0.0, mass * ground.least - has.dot(from.contact.normal));
+        };
+        const double by_top = needed(on.m, momentum(on), top),
+                     by_ground = needed(real.m - on.m, momentum(real) - momentum(on), ground);
+        const double s = by_top + by_ground > 0.0 ? by_top / (by_top + by_ground) : std::min(1.0, on.m / real.m);
+        shared.of_top = s;
+        ground.contact.normal = ((1.0 - s) * ground.contact.normal + s * top.contact.normal).normalized();
+        top = list[--count];
+        return shared;
+    }
+
+    /// Both again, each with its share of the impulse.
+    [[gnu::noinline]] static void give_each(const Shared& shared, Touch* list, int& count) {
+        if (shared.top < 0) return;
+        const double s = shared.of_top, given = list[shared.ground].normal_change;
+        Touch ground = shared.apart[0], top = shared.apart[1];
+        const double length = ((1.0 - s) * ground.contact.normal + s * top.contact.normal).norm();
+        ground.normal_change = (1.0 - s) * given / length, top.normal_change = s * given / length;
+        list[shared.ground] = ground;
+        list[count++] = list[shared.top];
+        list[shared.top] = top;
     }
 
     /// The same for the faces of a barrier. In one so thin that material of both sides shares a node, the sides' mirror
@@ -545,12 +633,14 @@ private:
     static Vec3 meet(const SolidBody& body, SurfaceSet near, Index node, const Vec3& x, const SolidBody::Node& real,
                      const Vec3& mixed, double had2, const Given& given) {
         Touch list[kMostTouched];
-        const int count = touched(body, near, node, x, mixed, list);
+        int count = touched(body, near, node, x, mixed, list);
         Vec3 v = Vec3(real.x, real.y, real.z) / real.m;
         const Vec3 came = v;
         const double most2 = std::max(came.squaredNorm(), had2);
+        const Shared shared = near & body.barriers ? share_ground(body, node, real, list, count) : Shared{};
         separate(list, count, v);
         if (v.squaredNorm() > most2) v = without_gain(body, x, list, count, came, v, most2);
+        give_each(shared, list, count);
         const Vec3 contact_work = v;
         for (Touch* t = list; t < list + count; ++t) {
             const Surface& surface = body.surfaces[static_cast<std::size_t>(t->surface)];

@@ -105,6 +105,19 @@ double thickness(const Surface& barrier, const Vec3& from, const Vec3& way) {
                                                 : barrier.shape->thickness(from, way);
 }
 
+bool is_covered(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec3& x, const Contact& contact,
+                double cell) {
+    constexpr double kSole = 0.05;  // [cells]: a barrier may end on the ground, but for what its field errs by there
+    if (!is_floor(contact.normal) || !(contact.distance > 0.0)) return false;
+    const Vec3 foot = x - (contact.distance - kSole * cell) * contact.normal;
+    for (; near != 0; near &= near - 1) {
+        const Surface& barrier = surfaces[static_cast<std::size_t>(__builtin_ctz(near))];
+        Entry entry;
+        if (barrier.is_barrier() && enters(barrier, x, foot, entry)) return true;
+    }
+    return false;
+}
+
 SurfaceSet surfaces_near(const std::vector<Surface>& surfaces, const Vec3& low, const Vec3& high, double cell,
                          double more) {
     SurfaceSet set = 0;
@@ -174,6 +187,7 @@ double sideways_reach(const Surface& surface, const Vec3& low, const Vec3& high)
 MirrorParticles::MirrorParticles(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec3& x, double cell) {
     Near list[kMostNear];
     int count = 0;
+    const SurfaceSet all = near;
     for (; near != 0 && count < kMostNear; near &= near - 1) {
         const Surface& surface = surfaces[static_cast<std::size_t>(__builtin_ctz(near))];
         if (surface.is_barrier()) {
@@ -181,7 +195,10 @@ MirrorParticles::MirrorParticles(const std::vector<Surface>& surfaces, SurfaceSe
             continue;
         }
         const Contact c = contact(surface, x);
-        if (c.distance < mirror_reach(c.normal) * cell)
+        if (!(c.distance < mirror_reach(c.normal) * cell)) continue;
+        if (is_covered(surfaces, all, x, c, cell))
+            covered_ = true;
+        else
             list[count++] = {c, surface.hold == Hold::stuck, std::numeric_limits<double>::infinity()};
     }
     if (count > 0) reflect(list, count, x);

@@ -72,6 +72,13 @@ double thickness(const Surface& barrier, const Vec3& from, const Vec3& way);
 using SurfaceSet = std::uint32_t;
 constexpr int kMostSurfaces = 32;
 
+/// Whether material can stand on a surface of that normal.
+inline bool is_floor(const Vec3& normal) { return normal.z() > 0.5; }
+/// Whether a barrier stands between a place and the floor that it has that contact with. What is above a low wall does
+/// not meet the ground below the wall.
+bool is_covered(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec3& x, const Contact& contact,
+                double cell);
+
 /// Surfaces that a box from `low` to `high` [m] may come closer to than mirror_reach() cells and `more` [m].
 SurfaceSet surfaces_near(const std::vector<Surface>& surfaces, const Vec3& low, const Vec3& high, double cell,
                          double more);
@@ -129,6 +136,8 @@ public:
     MirrorParticles(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec3& x, double cell);
     const MirrorParticle* begin() const { return list_.data(); }
     const MirrorParticle* end() const { return list_.data() + count_; }
+    /// Whether a barrier covers a floor that is near (is_covered). The point has no mirror particle there.
+    bool stands_on_barrier() const { return covered_; }
 
 private:
     struct Near {
@@ -151,6 +160,7 @@ private:
     static void cut_off(MirrorParticle& mirror, const Near& near, const Vec3& from);
     std::array<MirrorParticle, kMost> list_;
     int count_ = 0;
+    bool covered_ = false;
 };
 
 }  // namespace frana
