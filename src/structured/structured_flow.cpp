@@ -38,6 +38,7 @@ StructuredBody::StructuredBody(const StructuredScene& scene)
       grain_pressure(grid.size()),
       moved(grid.size()),
       ground(grid.size()),
+      block_depth(grid.size()),
       obstacles(scene.obstacles),
       rankine(scene.hydrostatic ? Rankine{} : Rankine{law.active(), law.passive()}),
       bed_law(scene.bed_law),
@@ -45,6 +46,7 @@ StructuredBody::StructuredBody(const StructuredScene& scene)
       density(scene.density),
       share(scene.share),
       gravity(scene.gravity),
+      by_depth(scene.laws || hangs_on_speed(scene.bed_law)),
       mapped(static_cast<bool>(scene.bed)),
       curved(scene.bed && scene.curved) {
     if (scene.laws) flow.laws.emplace(*scene.laws, grid);

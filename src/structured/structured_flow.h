@@ -153,6 +153,7 @@ struct StructuredBody {
     LazyArray<GrainPressure> grain_pressure;
     LazyArray<Moved> moved;
     LazyArray<NodeGround> ground;
+    LazyArray<double> block_depth;  ///< sum of w m f h_c, of structure; only where friction depends on depth [kg m]
     /// What particles are made of, only together with free water [m^3].
     struct alignas(32) Bound {
         double volume, released, solids, structured;
@@ -167,6 +168,7 @@ struct StructuredBody {
     BedLaw bed_law;            ///< where flow.laws has none
     CreepFilter creep_filter;  ///< of the grains' surface
     double density, share, gravity;
+    bool by_depth = false;   ///< friction depends on the depth
     bool grains = false;     ///< some particle is broken or has grains besides its structure
     bool has_exits = false;  ///< some node that was checked has no ground
     bool mapped = false;     ///< coordinates are on the map, and flow has the bed; otherwise they lie in its plane

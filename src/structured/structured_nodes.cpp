@@ -34,7 +34,7 @@ template <class Real>
 struct DrivenOf {
     Real mass, across, depth;
     FlatOf<Real> before, driven;
-    Real law_depth;         ///< for friction: without its 2-cell wave where the surface has none either [m]
+    Real law_depth;         ///< for friction (friction_depth) [m]
     double density;         ///< of what is there [kg/m^3]
     FlatOf<Real> beyond{};  ///< of what drove it, by earth pressure that is not hydrostatic [m/s]
     FlatOf<Real> thrust{};  ///< and by the grains' surface and all their pressure [kg m/s]
@@ -217,6 +217,17 @@ template <class Real>
     return mass / (body.density * body.flow.area * open);
 }
 
+/// The depth that friction uses [m]. `share`: of grains, which have that of the depth-averaged flow. Structure is as deep
+/// as its particles are. Around a block its depth is smeared, and covers a part of each node. Drag of thin flow there
+/// would hold the whole block. What lies on a block makes it deeper.
+template <class Real>
+[[gnu::always_inline]] inline Real friction_depth(const StructuredBody& body, Index k, Real mass, Real depth,
+                                                  Real share) {
+    if (!body.by_depth) return depth;
+    const Real of_blocks = max(read<Real>(&body.block_depth[k]) / mass, (1.0 - share) * depth);
+    return body.grains ? share * read<Real>(&body.flow.nodes.law_depth[k]) + of_blocks : of_blocks;
+}
+
 /// What grains do at a node whose weight acts already. Over a bend that is by the velocity in the middle of the step.
 /// There the stress of the structure does not count: a node with next to no mass gets any speed by it.
 template <class Real, class Law>
@@ -251,8 +262,8 @@ template <class Real, class Law>
     const GroundOf<Real> ground = ground_at(&body.ground[k], Real{});
     const FlatOf<Real> weight = dt * ground.plane_gravity, before = stressed(body, k, mass, step.times.velocity_dt);
     const Real depth = dry_depth(body, k, mass, ground.open);
-    const Real law_depth = body.grains ? read<Real>(&body.flow.nodes.law_depth[k]) : depth;
-    DrivenOf<Real> node{mass, ground.across, depth, before, before + weight, law_depth, body.density};
+    DrivenOf<Real> node{mass, ground.across, depth, before, before + weight, Real{}, body.density};
+    Real share{};  // of grains
     TallyOf<Real>& tally = step.of(Real{});
     tally.weight += mass * weight;
     if (body.grains) {
@@ -262,7 +273,9 @@ template <class Real, class Law>
         tally.pressure += node.thrust;
         node.beyond = dt * grains.beyond;
         node.across *= grains.weight();
+        share = grains.share;
     }
+    node.law_depth = friction_depth(body, k, mass, depth, share);
     finish(step, k, ground, node);
 }
 
@@ -286,20 +299,23 @@ void move_wet(NodeStep<Law>& step, Index k) {
                           met.depth,
                           before,
                           before + weight,
-                          met.depth,
+                          0.0,
                           density_of(body, k, met)};
     impulse.weight += met.mass * vec(weight);
+    double share = 0.0;  // of grains
     if (body.grains) {
         const GrainForceOf<double> grains = force_of_grains(step, k, ground, node, 1.0 - met.support);
         const FlatOf<double> thrust = thrust_of(step, k, grains, 1.0 - met.support, node.driven);
         node.driven += thrust, node.across *= grains.weight();
         node.beyond = dt * grains.beyond, node.thrust = met.mass * thrust;
         impulse.pressure += vec(node.thrust);
+        share = grains.share;
     }
+    node.law_depth = friction_depth(body, k, mass, met.depth, share);
     if (has_water(body, k)) {  // drag uses what friction holds, and friction then what drag does
         const auto& law = step.template law_at<double>(k);
         const FlatOf<double> held =
-            braked(law, body, node.density, ground, node.across, met.depth, before, node.driven, {dt, 0.0});
+            braked(law, body, node.density, ground, node.across, node.law_depth, before, node.driven, {dt, 0.0});
         const Vec2 dragged = drag(body, k, met, vec(before), vec(held), dt, step.tally) - vec(held);
         node.driven += flat(dragged);
         impulse.water += met.mass * dragged;

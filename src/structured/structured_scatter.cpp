@@ -71,6 +71,23 @@ template <bool kWater>
                                    edges_of(q, p + n));
 }
 
+/// How deep the structure of four particles is by itself, weighted with its mass. What was released is water already.
+template <bool kWater>
+[[gnu::always_inline]] inline void spread_block_depths(StructuredBody& body, Index p, int lanes, const Stencils& sx,
+                                                       const Stencils& sy, Double4 mass) {
+    const StructuredPoints& q = body.points;
+    const Index stride = body.grid.stride();
+    Double4 depth = load(&q.depth[p], lanes);
+    if constexpr (kWater) depth *= 1.0 - load(&q.released[p], lanes) / max(load(&q.volume[p], lanes), all(1e-300));
+    const Double4 brought = mass * depth;
+    Double4 row[4];
+    transpose(sx.w[0] * brought, sx.w[1] * brought, sx.w[2] * brought, Double4{}, row);
+    for (int n = 0; n < lanes; ++n) {
+        double* node = body.block_depth.data() + sy.first[n] * stride + sx.first[n];
+        for (int j = 0; j < 3; ++j, node += stride) store(node, load(node) + sy.w[j][n] * row[n]);
+    }
+}
+
 /// Four particles at once.
 template <bool kGrains, bool kWater>
 [[gnu::always_inline]] inline void scatter_particles(StructuredBody& body, Index p, int lanes, bool at_side,
@@ -91,6 +108,7 @@ template <bool kGrains, bool kWater>
     scatter_four(body.flow.nodes, stride, lanes, sx, sy,
                  {m, m * load(&q.vx[p], lanes), m * load(&q.vy[p], lanes), mc * cxx, mc * cxy, mc * cyx, mc * cyy},
                  internal_force_of(body, p, lanes, intact));
+    if (body.by_depth) spread_block_depths<kWater>(body, p, lanes, sx, sy, m * intact);
     if constexpr (kGrains) {
         Double4 thrust[4];
         if (grain_pressures(body, p, lanes, m * (1.0 - intact), thrust))
@@ -149,6 +167,7 @@ void clear_nodes(StructuredBody& body) {
         for (Index j = 0; j < kTile; ++j) {
             std::fill_n(&body.nodes[first + j * body.grid.stride()], kTile, Deposit{});
             std::fill_n(&body.node_mass[first + j * body.grid.stride()], kTile, 0.0);
+            if (body.by_depth) std::fill_n(&body.block_depth[first + j * body.grid.stride()], kTile, 0.0);
             if (body.grains) {
                 std::fill_n(&body.grain_pressure[first + j * body.grid.stride()], kTile, GrainPressure{});
                 std::fill_n(&body.flow.nodes.column_mass[first + j * body.grid.stride()], kTile, 0.0);
