@@ -2,10 +2,11 @@
 #include <fmt/core.h>
 
 #include "catch.h"
+#include "fake_simulation.h"
 #include "run/end_remarks.h"
 
 using Catch::Contains;
-using frana::RemarkTally;
+using namespace frana;
 
 TEST_CASE("Remarks that differ in numbers only are one, told with the run that it matters most for", "[ensemble]") {
     RemarkTally tally;
@@ -28,6 +29,31 @@ TEST_CASE("Of remarks on two things with numbers in their names each is told", "
     CHECK(all.front().text == "gully 2: its 40 m3 did not enter");
     CHECK(all.front().runs == 2);
     CHECK(all.front().sentence(3) == "in 2 of 3 runs, such as sample 0: gully 2: its 40 m3 did not enter");
+}
+
+TEST_CASE("Energy that motion got by virtual mass is remarked on from a hundredth on") {
+    struct : FakeSimulation {
+        double drag = 0.0;
+        Extras extras() const override {
+            Extras all;
+            all.water.emplace();
+            all.water->drag = drag;
+            return all;
+        }
+    } simulation;
+    RunSummary summary;
+    summary.last.kinetic = 60e6, summary.last.dissipated = 40e6;
+    const auto remarks = [&](double drag) {
+        simulation.drag = drag;
+        std::vector<std::string> about;
+        for (const auto& remark : remarks_at_end(simulation, summary))
+            if (remark.text.find("virtual_mass") != std::string::npos) about.push_back(remark.text);
+        return about;
+    };
+    CHECK(remarks(26e6).empty());
+    CHECK(remarks(-0.9e6).empty());
+    REQUIRE(remarks(-42e6).size() == 1);
+    CHECK_THAT(remarks(-42e6).front(), Contains("got 4.2e+07 J") && Contains("42 %"));
 }
 
 TEST_CASE("Of very many remarks the first are told, and how many more there are", "[ensemble]") {

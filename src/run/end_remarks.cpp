@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 
 #include "observe/energy_made.h"
 #include "run/simulation.h"
@@ -25,6 +26,20 @@ void remark_on_energy(const RunSummary& summary, std::vector<EndRemark>& remarks
              "give a smaller grid.cell",
              made, 100.0 * share),
          std::min(share, kMost)});
+}
+
+/// Virtual mass that grows while there is slip stores energy that nothing gave (src/water/THEORY.md, section 6).
+void remark_on_virtual_mass(const std::optional<WaterBudget>& water, const RunSummary& summary,
+                            std::vector<EndRemark>& remarks) {
+    constexpr double kMuch = 0.01;
+    const double stake = energy_at_stake(summary.first, summary.last), gained = water ? -water->drag : 0.0;
+    if (!(stake > 0.0 && gained > kMuch * stake)) return;
+    remarks.push_back(
+        {fmt::format(
+             "water.virtual_mass: motion got {:.3g} J by it beyond what drag took, {:.3g} % of what friction took "
+             "and motion had; expected none: it grows where solids enter water; compare with \"none\"",
+             gained, 100.0 * gained / stake),
+         gained / stake});
 }
 
 bool is_digit(char letter) { return std::isdigit(static_cast<unsigned char>(letter)) != 0; }
@@ -68,6 +83,7 @@ std::vector<EndRemark> remarks_at_end(const Simulation& simulation, const RunSum
     std::vector<EndRemark> remarks;
     for (std::string& text : simulation.remarks()) remarks.push_back({std::move(text)});
     remark_on_energy(summary, remarks);
+    remark_on_virtual_mass(simulation.extras().water, summary, remarks);
     return remarks;
 }
 
