@@ -145,7 +145,7 @@ void exchange(const Exchange& by, double dt, Phase& c, Phase& u) {
         return;
     }
     const double reduced = c.mass * u.mass / mass;
-    const Vec2 drive = reduced * (c.force / c.mass - u.force / u.mass) + by.virtual_mass * by.carried;
+    const Vec2 drive = reduced * (c.force / c.mass - u.force / u.mass);
     const Vec2 slip = slip_after(c.velocity - u.velocity, drive, reduced + by.virtual_mass, by, dt);
     c.velocity = together + u.mass / mass * slip;
     u.velocity = together - c.mass / mass * slip;

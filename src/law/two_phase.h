@@ -99,8 +99,6 @@ struct Exchange {
     double drag;                ///< h C [Pa s^j / m^j]
     int power;                  ///< j
     double virtual_mass = 0.0;  ///< [kg/m^2]
-    /// Acceleration that u got from its forces elsewhere, without the share that virtual mass gives c [m/s^2].
-    Vec2 carried{0, 0};
 };
 
 /// THEORY (24) to (26): a step of dt [s] of both velocities under forces, drag and virtual mass. It is stable for any

@@ -38,6 +38,17 @@ Vec2 surface_slope(const StructuredBody& body, Index k) {
     return {along(1), along(body.grid.stride())};
 }
 
+/// What drives the water of a node down the slope of its surface [m/s^2]. Next to a face it goes along it alone.
+Vec2 fall_of_water(const StructuredBody& body, Index k, const Met& met) {
+    const auto behind_face = [&](Index n) { return body.ground[n].open > 0.0 && body.ground[n].open <= kLeastOpen; };
+    Vec2 fall = -body.ground[k].across * met.slope;
+    for (const int axis : {0, 1}) {
+        const Index step = axis == 0 ? 1 : body.grid.stride();
+        if (behind_face(k - step) || behind_face(k + step)) fall[axis] = 0.0;
+    }
+    return fall;
+}
+
 /// Rate at which water speeds up its slip where grains are not spread evenly over the depth [1/s]. It is stable only
 /// where drag is stronger. (van den Bout et al. 2021, sec. 2.4; its share of mobile water, alpha_u, stands above and
 /// below.)
@@ -72,43 +83,70 @@ Met meet_water(const StructuredBody& body, Index k) {
     return met;
 }
 
-Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, const Vec2& driven, double dt,
-          StructuredTally& tally) {
-    FreeWater& water = *body.water;
+DragStep drag_step(const StructuredBody& body, Index k, const Met& met, const Vec2& before, const Vec2& driven,
+                   const StepTimes& times) {
+    const FreeWater& water = *body.water;
     const StructuredBody::Bound& bound = body.bound[k];
+    const double dt = times.velocity_dt;
     // Particles fill the open share of the water's cell. There they are as deep as elsewhere, and there alone both hold
     // on to one another. Momentum is that of the whole cell, so that what one gives the other gets.
     const double area = body.grid.cell() * body.grid.cell(), open = body.ground[k].open;
     const double h = water.h[k], total = met.depth + h, solids = bound.solids / (open * area);
     const double confined = std::max(0.0, met.depth - solids), fluid = confined + h;
     const Mixture mixture{solids / total, bound.structured / bound.solids, confined / fluid};
-    Phase c{met.mass / area, before, (met.mass / area / dt) * (driven - before)};
-    Phase u{water.by.material.fluid_density * h, Vec2(water.qx[k], water.qy[k]) / h};
+    const Vec2 v(water.qx[k] / h, water.qy[k] / h);
     // Of what drives the water friction takes a part, and all of it at most.
-    const Vec2 falls = -body.ground[k].across * met.slope;
+    const Vec2 falls = fall_of_water(body, k, met);
     const double drive = falls.norm(),
-                 brake = quadratic_drag(water.friction_at(k), {body.gravity, h, 1.0}) * u.velocity.squaredNorm() +
-                         linear_drag(water.viscosity, total) * u.velocity.norm();
-    const Vec2 carried = drive > brake ? Vec2(falls * (1.0 - brake / drive)) : Vec2(0, 0);
-    const double flux = (mixture.bound() * c.velocity + mixture.free() * u.velocity).norm();
-    const Exchange by{open * total * water.drag.coefficient(mixture, flux), water.by.material.power,
-                      open * virtual_mass(water.by.virtual_mass, water.by.material, mixture, total), carried};
-    const Vec2 slip = before - u.velocity;
-    if (water.viscosity.solid_gradient) {
-        const double rate = spread_rate(water.viscosity, mixture, total), reduced = c.mass * u.mass / (c.mass + u.mass);
-        const double holds = by.drag * (by.power == 2 ? slip.norm() : 1.0) / reduced;
-        // It is a part of the viscous stress at the bed, which slows the water and does not drive it. What that stops
-        // within a step slips no more.
-        const double brakes = linear_drag(water.viscosity, total), length = slip.norm();
-        if (rate > holds)
-            ++tally.outrun;
-        else if (length > 0.0 && brakes * dt <= 1.0)
-            u.force = -open * u.mass * std::min(rate, brakes * u.velocity.norm() / length) * slip;
-    }
-    exchange(by, dt, c, u);
-    tally.drag += met.mass * along_ground(body.ground[k], driven - c.velocity, 0.5 * (slip + c.velocity - u.velocity));
+                 brake = quadratic_drag(water.friction_at(k), {body.gravity, h, 1.0}) * v.squaredNorm() +
+                         linear_drag(water.viscosity, total) * v.norm();
+    DragStep step;
+    if (drive > brake) step.driving = falls * (1.0 - brake / drive);
+    // The water had all of it before the particles' steps. Were it left so, they would slip the less the longer its step.
+    const double mass = water.by.material.fluid_density * h;
+    step.driven = driven;
+    step.c = {met.mass / area, before, (met.mass / area / dt) * (driven - before)};
+    step.u = {mass, v - times.ahead * step.driving, mass * step.driving};
+    const double flux = (mixture.bound() * before + mixture.free() * step.u.velocity).norm();
+    step.by = {open * total * water.drag.coefficient(mixture, flux), water.by.material.power,
+               open * virtual_mass(water.by.virtual_mass, water.by.material, mixture, total)};
+    if (!water.viscosity.solid_gradient) return step;
+    const Vec2 slip = before - step.u.velocity;
+    const double rate = spread_rate(water.viscosity, mixture, total),
+                 reduced = step.c.mass * mass / (step.c.mass + mass);
+    const double holds = step.by.drag * (step.by.power == 2 ? slip.norm() : 1.0) / reduced;
+    // It is a part of the viscous stress at the bed, which slows the water and does not drive it. What that stops
+    // within a step slips no more.
+    const double brakes = linear_drag(water.viscosity, total), length = slip.norm();
+    step.outrun = rate > holds;
+    if (!step.outrun && length > 0.0 && brakes * dt <= 1.0)
+        step.u.force -= open * mass * std::min(rate, brakes * step.u.velocity.norm() / length) * slip;
+    return step;
+}
+
+Vec2 DragStep::dragged(double dt) const {
+    Phase solids = c, fluid = u;
+    exchange(by, dt, solids, fluid);
+    return solids.velocity;
+}
+
+Vec2 drag(StructuredBody& body, Index k, const Met& met, const DragStep& step, const StepTimes& times,
+          StructuredTally& tally) {
+    constexpr double kHeld = 1e20;  // the mass of the ground, over that of particles
+    FreeWater& water = *body.water;
+    const double dt = times.velocity_dt, h = water.h[k];
+    Phase c = step.c, u = step.u;
+    if (step.held) c.mass *= kHeld, c.force *= kHeld;
+    exchange(step.by, dt, c, u);
+    Vec2 solids = c.velocity;
+    if (step.held)  // what they got, though the ground has it already
+        solids = step.driven + 1.0 / step.c.mass * (u.mass * (step.u.velocity - u.velocity) + dt * step.u.force);
+    tally.outrun += step.outrun ? 1 : 0;
+    const Vec2 slip = step.c.velocity - step.u.velocity;
+    tally.drag += met.mass * along_ground(body.ground[k], step.driven - solids, 0.5 * (slip + c.velocity - u.velocity));
+    u.velocity += (times.ahead - dt) * step.driving;
     water.qx[k] = h * u.velocity.x(), water.qy[k] = h * u.velocity.y();
-    return c.velocity;
+    return solids;
 }
 
 void release_to_nodes(StructuredBody& body) {

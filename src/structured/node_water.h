@@ -28,10 +28,24 @@ inline double density_of(const StructuredBody& body, Index k, const Met& met) {
     const double cell = body.grid.cell();
     return met.depth > 0.0 ? met.mass / (body.ground[k].open * cell * cell * met.depth) : body.density;
 }
-/// Drag and virtual mass between a node's particles and its water over a step. It brought the particles from `before`
-/// to
-/// `driven`. Returns their velocity. What both lose is the impulse times the mean slip.
-Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, const Vec2& driven, double dt,
+/// Drag and virtual mass between a node's particles and its water over a step.
+struct DragStep {
+    Phase c, u;  ///< particles and water, with what drives them
+    Exchange by;
+    Vec2 driven{0, 0};    ///< velocity of the particles without the water [m/s]
+    Vec2 driving{0, 0};   ///< the water [m/s^2]
+    bool outrun = false;  ///< drag is too weak for xi, which was left out
+    bool held = false;    ///< friction holds the particles whatever the water does in the step
+
+    /// Velocity of particles that nothing holds, after a step.
+    Vec2 dragged(double dt) const;
+};
+/// The step brings the particles from `before` to `driven`, without the water. What drives the water acts along with
+/// them. Its own step gave it that of all the time it is ahead.
+DragStep drag_step(const StructuredBody& body, Index k, const Met& met, const Vec2& before, const Vec2& driven,
+                   const StepTimes& times);
+/// Takes it. Returns the particles' velocity, if friction did no more. What both lose is the impulse times the mean slip.
+Vec2 drag(StructuredBody& body, Index k, const Met& met, const DragStep& step, const StepTimes& times,
           StructuredTally& tally);
 /// What the particles released in the last step joins the water, with the velocity that points brought. Nodes beyond
 /// the grid's sides have no water. What is released there joins the nearest node that has, in one order.

@@ -206,7 +206,8 @@ void StructuredFlow::advance(double until) {
     expect(until > status_.time, "a step goes forward");
     const double dt = step_length(until);
     status_.flow_steps += longest_step() / flow_step(signal_);
-    const StepTimes times = body_.grains ? StepTimes{0.5 * (status_.dt + dt), dt} : StepTimes{dt, 0.0};
+    const double ahead = until - status_.time;
+    const StepTimes times = body_.grains ? StepTimes{0.5 * (status_.dt + dt), dt, ahead} : StepTimes{dt, 0.0, ahead};
     timed_("clear", [&] { clear_nodes(body_); });
     timed_("scatter", [&] { scatter(body_); });
     if (body_.grains) timed_("surface", [&] { raise_surface(body_); });

@@ -180,6 +180,7 @@ struct StructuredBody {
 /// the places (leapfrog), as those of the depth-averaged flow. What is intact begins with a whole step.
 struct StepTimes {
     double velocity_dt, drift;
+    double ahead = 0.0;  ///< how far free water is ahead at the step's start
 };
 
 /// Calls work(grains, water), types that say what there is in a run. They are chosen once a loop, and not for every
@@ -215,7 +216,7 @@ class StructuredFlow {
 public:
     explicit StructuredFlow(const StructuredScene& scene);
 
-    /// One step, never past `until` [s]. Throws NumericsError when a number stops being finite.
+    /// One step, never past `until` [s], where free water is already. Throws NumericsError when a number stops being finite.
     void advance(double until);
     /// Length at most of the next step [s].
     double longest_step() const;

@@ -282,6 +282,23 @@ template <class Real, class Law>
 Vec2 vec(const FlatOf<double>& a) { return {a.x, a.y}; }
 FlatOf<double> flat(const Vec2& a) { return {a.x(), a.y()}; }
 
+/// What water adds to the velocity of a node's particles. Drag uses what friction holds, and friction then what drag does.
+/// Where it holds that as well, the water slips past what rests.
+template <class Law>
+Vec2 drag_after_friction(NodeStep<Law>& step, Index k, const Met& met, const GroundOf<double>& ground,
+                         const DrivenOf<double>& node) {
+    StructuredBody& body = step.body;
+    const double dt = step.times.velocity_dt;
+    const auto left = [&](const FlatOf<double>& driven) {
+        return vec(braked(step.template law_at<double>(k), body, node.density, ground, node.across, node.law_depth,
+                          node.before, driven, {dt, 0.0}));
+    };
+    const Vec2 held = left(node.driven);
+    DragStep drags = drag_step(body, k, met, vec(node.before), held, step.times);
+    if (held.isZero(0.0)) drags.held = left(node.driven + flat(drags.dragged(dt))).isZero(0.0);
+    return drag(body, k, met, drags, step.times, step.tally) - held;
+}
+
 /// A node that may have water.
 template <class Law>
 void move_wet(NodeStep<Law>& step, Index k) {
@@ -312,11 +329,8 @@ void move_wet(NodeStep<Law>& step, Index k) {
         share = grains.share;
     }
     node.law_depth = friction_depth(body, k, mass, met.depth, share);
-    if (has_water(body, k)) {  // drag uses what friction holds, and friction then what drag does
-        const auto& law = step.template law_at<double>(k);
-        const FlatOf<double> held =
-            braked(law, body, node.density, ground, node.across, node.law_depth, before, node.driven, {dt, 0.0});
-        const Vec2 dragged = drag(body, k, met, vec(before), vec(held), dt, step.tally) - vec(held);
+    if (has_water(body, k)) {
+        const Vec2 dragged = drag_after_friction(step, k, met, ground, node);
         node.driven += flat(dragged);
         impulse.water += met.mass * dragged;
     }
