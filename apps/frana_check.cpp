@@ -15,6 +15,7 @@
 #include "io/gdal_reader.h"
 #include "run/folder/run_insitu.h"
 #include "run/folder/run_page.h"
+#include "run/simulation.h"
 #include "scene/bed_over.h"
 #include "scene/flow_start.h"
 #include "scene/inflow_facts.h"
@@ -328,6 +329,16 @@ std::string barriers_text(const Scene& scene) {
     return text;
 }
 
+/// What stands or comes in on top of barriers, as a run's report says of particles. What else a simulation remarks is of
+/// its end.
+std::vector<std::string> remarks_on_placed(const Scene& scene) {
+    if (scene.barriers.empty() || scene.structure || scene.solid || scene.water) return {};
+    std::vector<std::string> placed;
+    for (std::string& remark : make_simulation(scene)->remarks())
+        if (remark.find("on top of barriers") != std::string::npos) placed.push_back(std::move(remark));
+    return placed;
+}
+
 }  // namespace
 
 std::string told_of(const BuiltScene& built) {
@@ -345,6 +356,7 @@ std::string told_of(const BuiltScene& built) {
     for (const Insitu& entry : built.scene.insitu)
         text += fmt::format("in situ     {} \"{}\"\n", kind_word(entry.kind), entry.name);
     for (const std::string& remark : built.scene.log) text += "remark      " + remark + '\n';
+    for (const std::string& remark : remarks_on_placed(built.scene)) text += "remark      " + remark + '\n';
     return text + "ready to run\n";
 }
 

@@ -323,9 +323,10 @@ TEST_CASE("the shipped calibration finds what its README promises, as far as few
 
 TEST_CASE("two events are weighed together, with the same bytes on any number of threads", "[ensemble]") {
     const SurveyedSlide slide;
+    slide.write("again.toml", text_of(slide.path("event.toml")));  // one case is one event
     slide.write("two.toml", "[calibrate]\nsamples = 6\nrounds = 2\nsearch = \"none\"\nsigma = 1\n" + only_mu +
                                 "[[event]]\ncase = \"event.toml\"\nname = \"a\"\n"
-                                "[[event]]\ncase = \"event.toml\"\nname = \"b\"\nweight = 0.5\n");
+                                "[[event]]\ncase = \"again.toml\"\nname = \"b\"\nweight = 0.5\n");
     REQUIRE(slide.frana("calibrate two.toml --out one --threads 1 --quiet").code == 0);
     REQUIRE(slide.frana("calibrate two.toml --out three --threads 3 --quiet").code == 0);
     for (const char* file : {"runs.csv", "posterior.csv"})
@@ -562,6 +563,11 @@ TEST_CASE("what cannot be calibrated is said in one sentence", "[ensemble]") {
                Contains("found 0; expected a number above 0"));
     CHECK_THAT(complaint("[calibrate]\n" + vary + event + event),
                Contains("event.1.name: found \"case\" a second time; expected another name"));
+    fs::create_symlink("case.toml", scene.folder() / "link.toml");
+    CHECK_THAT(complaint("[calibrate]\n" + vary + event + "[[event]]\ncase = \"link.toml\"\n"),
+               Contains("event.1.case: found the case of \"case\" a second time"));
+    CHECK_THAT(complaint("[calibrate]\n" + vary + event + event + "name = \"other\"\n"),
+               Contains("event.1.case: found the case of \"case\" a second time"));
     CHECK_THAT(complaint("[calibrate]\nsamples = 501\nrounds = 10\n" + vary + event), Contains("found 5010 runs"));
     CHECK_THAT(complaint("[calibrate]\n[[calibrate.vary]]\nkey = \"release.0.depth\"\ndistribution = \"discrete\"\n"
                          "values = [1, 2]\n" +

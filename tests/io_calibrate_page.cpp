@@ -65,3 +65,13 @@ TEST_CASE("A calibration says which of its runs left the terrain, and whether it
     c.fits[0].left_share.assign(16, 0.25);
     CHECK_THAT(calibration_section(c), Contains("slope: at the best point 25 % of all that flowed left the terrain"));
 }
+
+TEST_CASE("A calibration does not tell a fall of the misfit that its numbers do not show", "[ensemble]") {
+    Calibration c = calibration_of(std::vector<double>(16, 10.0));
+    const double best = -c.fits[0].log_likelihood[0];
+    c.optimum = Optimum{{0.5}, best - 1e-9, {}, 1, "there", c.fits[0].scores};
+    c.optimum->scores.resize(1);
+    CHECK_THAT(calibration_section(c), Contains("the misfit did not fall from ") && !Contains("fell from"));
+    c.optimum->misfit = 0.5 * best;
+    CHECK_THAT(calibration_section(c), Contains("the misfit fell from "));
+}

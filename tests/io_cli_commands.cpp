@@ -13,6 +13,7 @@
 #include "catch.h"
 #include "checks/verify/library.h"
 #include "plane_case.h"
+#include "pond.h"
 #include "run/folder/run_lock.h"
 #include "scene/parameters.h"
 
@@ -294,4 +295,14 @@ TEST_CASE("bench leaves with 2 and a sentence for numbers that cannot be", "[cli
     CHECK(scene.frana("bench --threads 0").code == 2);
     CHECK(scene.frana("bench --particles many").code == 2);
     CHECK_FALSE(fs::exists(scene.folder() / "b.json"));
+}
+
+TEST_CASE("A check says what stands on barriers from the start", "[cli][remarks]") {
+    const Pond pond;
+    const std::string barrier = "[[barrier]]\nname = \"plate\"\noutline = \"west.geojson\"\nheight = 3\n";
+    pond.write("case.toml", text_of(pond.path("case.toml")) + barrier);
+    const Outcome checked = pond.frana("check case.toml");
+    CHECK(checked.code == 0);
+    CHECK_THAT(checked.out,
+               Contains("remark      barriers: found ") && Contains("of releases on top of barriers; expected none"));
 }

@@ -170,6 +170,35 @@ TEST_CASE("runs join only with what they were made of; what was refused is tried
     CHECK_THAT(moved.err, Contains("expected runs of the same ensemble") && Contains("give the files back"));
 }
 
+TEST_CASE("Runs whose values name a file that has changed join no others", "[ensemble]") {
+    const Pond pond;
+    fs::copy_file(pond.path("west.geojson"), pond.path("part.geojson"));
+    const std::string vary =
+        "[ensemble]\ncase = \"case.toml\"\nmethod = \"sobol\"\nsamples = 8\nfields = [\"peak_depth\"]\n"
+        "[[ensemble.vary]]\nkey = \"release.0.outline\"\ndistribution = \"discrete\"\n"
+        "values = [\"all.geojson\", \"part.geojson\"]\n";
+    const std::string table =
+        "[ensemble]\ncase = \"case.toml\"\nmethod = \"table\"\ntable = \"rows.csv\"\nfields = [\"peak_depth\"]\n";
+    pond.write("rows.csv", "release.0.outline\nall.geojson\npart.geojson\n");
+    const std::string text = GENERATE_REF(vary, table);
+    CAPTURE(text);
+    pond.write("many.toml", text);
+    REQUIRE(pond.frana("ensemble many.toml --out many --quiet").code == 0);
+    const std::string part = text_of(pond.path("part.geojson"));
+    pond.write("part.geojson", text_of(pond.path("all.geojson")));
+    for (const char* how : {"ensemble many.toml --out many --resume", "ensemble --join many"}) {
+        const Outcome changed = pond.frana(how);
+        CHECK(changed.code == 2);
+        CHECK_THAT(changed.err, Contains("made with another content of release.0.outline=part.geojson") &&
+                                    Contains("give the files back"));
+    }
+    pond.write("part.geojson", part);
+    CHECK(pond.frana("ensemble --join many --quiet").code == 0);
+    const std::vector<std::string> outlines = pond.column("many", "release.0.outline");
+    CHECK(std::count(outlines.begin(), outlines.end(), "part.geojson") == static_cast<long>(outlines.size()) / 2);
+    CHECK_THAT(text_of(pond.path("many/samples.csv")), !Contains("'") && !Contains("\""));
+}
+
 TEST_CASE("Sobol's samples can be prolonged: those that have run stay", "[ensemble]") {
     const Pond pond;
     std::string few = depths;
@@ -184,6 +213,12 @@ TEST_CASE("Sobol's samples can be prolonged: those that have run stay", "[ensemb
     CHECK(Json::parse(text_of(pond.path("many/ensemble.json")))["run"] == 32);
     const Outcome other = pond.frana("ensemble many.toml --out many --shard 1/2 --quiet");
     CHECK(other.code == 0);  // runs again what it could have taken; the maps are the same
+    few.replace(few.find("samples = 32"), 12, "samples = 8");
+    pond.write("many.toml", few);
+    const Outcome fewer = pond.frana("ensemble many.toml --out many --resume");
+    CHECK(fewer.code == 2);
+    CHECK_THAT(fewer.err, Contains("found 32 runs, the last of them sample 31, where samples is 8") &&
+                              Contains("give samples = 32") && !Contains("remove"));
 }
 
 // What is refused is tried again with the new ones. Their peaks must not take the place of those that are there.

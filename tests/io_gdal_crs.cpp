@@ -234,6 +234,25 @@ TEST_CASE("A raster without a CRS is taken as local metres, and the log says so"
     CHECK(any_contains(log, "local metres"));
 }
 
+TEST_CASE("A local CRS in feet is refused and cured, one in metres is taken", "[gdal]") {
+    const FreshFolder folder;
+    RasterSpec spec;
+    spec.crs = "LOCAL_CS[\"mine\",UNIT[\"foot\",0.3048]]";
+    make_raster(folder.path() / "dem.tif", spec);
+    const std::string message = user_error([&] { read(folder.path() / "dem.tif"); });
+    INFO(message);
+    CHECK(contains(message, "its local CRS is in foot; expected metres"));
+    std::string line = cure_in(message);
+    line.erase(std::remove(line.begin(), line.end(), '\''), line.end());  // for a shell alone
+    run_gdal_line(line);
+    const GridGeometry cured = read(folder.path() / "dem_metres.tif").geometry;
+    CHECK(cured.cell == Approx(3.048));
+    CHECK(cured.x0 == Approx(500005.0 * 0.3048));
+    spec.crs = "LOCAL_CS[\"mine\",UNIT[\"metre\",1]]";
+    make_raster(folder.path() / "metres.tif", spec);
+    CHECK(read(folder.path() / "metres.tif").geometry.cell == 10.0);
+}
+
 TEST_CASE("A real elevation model in degrees is refused with a way out that leads to a terrain", "[gdal]") {
     const auto file = shared_data("small_dems/jacksboro_fault_tennessee.tif");
     if (!file) return;

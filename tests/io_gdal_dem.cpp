@@ -262,3 +262,23 @@ TEST_CASE("Heights that the file only calls feet are remarked upon, unless it de
     run_gdal_line("gdal_translate -mo HEIGHTS=feet,NAVD88 " + dem + " " + named);
     CHECK_FALSE(any_contains(read(named, {}, {}).log, "feet"));
 }
+
+TEST_CASE("An elevation model with a palette is asked whether it is a picture", "[gdal][remarks]") {
+    const FreshFolder folder;
+    RasterSpec spec;
+    spec.type = GDT_Byte;
+    make_raster(folder.path() / "dem.tif", spec);
+    std::vector<std::string> log;
+    GdalReader().read_dem(folder.path() / "dem.tif", {}, log);
+    CHECK_FALSE(any_contains(log, "palette"));
+    {
+        GDALColorTable colours;
+        const GDALColorEntry red{255, 0, 0, 255};
+        colours.SetColorEntry(1, &red);
+        const std::unique_ptr<GDALDataset> dataset(
+            GDALDataset::Open((folder.path() / "dem.tif").c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+        REQUIRE(dataset->GetRasterBand(1)->SetColorTable(&colours) == CE_None);
+    }
+    GdalReader().read_dem(folder.path() / "dem.tif", {}, log);
+    CHECK(any_contains(log, "dem.tif: has a palette, its numbers are used; is this a picture rather than a field?"));
+}

@@ -296,3 +296,18 @@ TEST_CASE("A cell needs values on half of it, in another zone as in the file's o
         CHECK(missing > 20);
     }
 }
+
+TEST_CASE("A field without a CRS beside a terrain that has one is remarked upon", "[gdal][remarks]") {
+    const FreshFolder folder;
+    RasterSpec spec = hump();
+    for (const char* crs : {"", "EPSG:32632"}) {
+        spec.crs = crs;
+        make_raster(folder.path() / "depth.tif", spec);
+        std::vector<std::string> log;
+        GdalReader().read_raster(folder.path() / "depth.tif", {500000.0, 6000000.0, 500080.0, 6000060.0}, wkt_of(32632),
+                                 log);
+        GdalReader().read_onto(folder.path() / "depth.tif", {4, 4, 500005.0, 6000005.0, 10.0}, wkt_of(32632), log);
+        const bool said = any_contains(log, "depth.tif: no CRS; coordinates are taken as the terrain's own");
+        CHECK(said == spec.crs.empty());
+    }
+}

@@ -291,3 +291,21 @@ TEST_CASE("A file of one line gives it, and another is refused by its layer and 
     CHECK(contains(refusal(feature("Polygon", square)), "holds 1 polygon; expected one line"));
     CHECK(contains(refusal(""), "the file holds no features; expected one line"));
 }
+
+TEST_CASE("A folder as an outline is read with a remark where it has one layer", "[gdal][remarks]") {
+    GeoJson files;
+    const std::string square = feature("Polygon", "[[[0,0],[10,0],[10,10],[0,10],[0,0]]]");
+    const auto file = files.write(square, crs_member("32632"));
+    std::filesystem::create_directory(files.path("maps"));
+    const std::string to = files.path("maps/area.shp").string();
+    {
+        const gdal::Dataset source(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR));
+        GDALDriver* const shapes = GetGDALDriverManager()->GetDriverByName("ESRI Shapefile");
+        const gdal::Dataset copy(shapes->CreateCopy(to.c_str(), source.get(), 0, nullptr, nullptr, nullptr));
+        REQUIRE(copy);
+    }
+    const Read out = read(files.path("maps"));
+    CHECK(out.polygons.parts.size() == 1);
+    CHECK(any_contains(out.log, "found a folder, of which the only layer \"area\" is read; expected a file"));
+    CHECK_FALSE(any_contains(read(to).log, "found a folder"));
+}

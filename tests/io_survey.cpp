@@ -284,3 +284,28 @@ TEST_CASE("A deposit is what lies at the end without free water, and that the re
     CHECK(found.remarks.back().find("free water counts among everything ever covered") == 0);
     CHECK_FALSE(solids_at_end({}).has_value());
 }
+
+TEST_CASE("Elevations are no surveyed footprint", "[survey]") {
+    const Files files;
+    RasterSpec spec;
+    spec.columns = 40, spec.rows = 30;
+    spec.transform = {600000.0, 10.0, 0.0, 5100300.0, 0.0, -10.0};
+    spec.value = [](int column, int row) { return 300.0 - column - row; };
+    make_raster(files / "dem.tif", spec);
+    CHECK(contains(refusal(files / "dem.tif"),
+                   "found values of up to 300, on 100 % of the pixels more than 100; expected "
+                   "a surveyed extent, above 0 where the flow was, not elevations"));
+    spec.value = [](int column, int row) { return 80.0 - column - 0.5 * row; };
+    make_raster(files / "low.tif", spec);
+    std::vector<std::string> log;
+    read(files / "low.tif", wkt_of("EPSG:32632"), log);
+    CHECK(any_contains(log, "low.tif: found values above 0, up to 80, in all of its pixels"));
+    log.clear();
+    spec.value = [](int column, int) { return column < 30 ? 255.0 : 0.0; };  // a mask of a byte
+    make_raster(files / "mask.tif", spec);
+    read(files / "mask.tif", wkt_of("EPSG:32632"), log);
+    spec.value = [](int column, int row) { return column < 30 ? 0.1 * row : 0.0; };  // depths
+    make_raster(files / "depth.tif", spec);
+    read(files / "depth.tif", wkt_of("EPSG:32632"), log);
+    CHECK_FALSE(any_contains(log, "elevations"));
+}

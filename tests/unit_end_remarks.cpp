@@ -63,3 +63,16 @@ TEST_CASE("Of very many remarks the first are told, and how many more there are"
     REQUIRE(tally.sentences(50).size() == 21);
     CHECK_THAT(tally.sentences(50).back(), Contains("30 more remarks"));
 }
+
+TEST_CASE("A flow that was nowhere deeper than the footprint depth is remarked upon at its end", "[remarks]") {
+    const frana::FakeSimulation simulation;
+    frana::RunSummary summary;
+    summary.reason = "end", summary.extremes.max_depth = 0.8;
+    const auto said = frana::remarks_at_end(simulation, summary);
+    REQUIRE(said.size() == 1);
+    CHECK_THAT(said.front().text, Contains("output.footprint_depth: found a flow of 0.8 m at most, nowhere deeper"));
+    summary.extremes.max_covered_area = 25.0;
+    CHECK(frana::remarks_at_end(simulation, summary).empty());
+    summary.extremes = {};
+    CHECK(frana::remarks_at_end(simulation, summary).empty());
+}

@@ -251,6 +251,42 @@ TEST_CASE("Samples can come from a table, with weights", "[ensemble]") {
     CHECK_THAT(file.complaint(text + mu), Contains("ensemble.vary"));
 }
 
+TEST_CASE("Numbers that make no distribution are told by the key, and are no mistake of the program", "[ensemble]") {
+    const EnsembleFile file;
+    const auto complaint = [&](const std::string& numbers) {
+        return file.complaint(head + "[[ensemble.vary]]\nkey = \"material.bed.mu\"\ndistribution = " + numbers + "\n");
+    };
+    for (const char* numbers : {"factor = 1.0", "factor = 0.5", "median = 0", "median = -0.2", "factor = 0"})
+        CHECK_THAT(complaint(std::string("\"lognormal\"\nrange = [0.1, 0.3]\n") + numbers),
+                   Contains("expected a median above 0 and a factor above 1"));
+    CHECK_THAT(complaint("\"normal\"\nmean = 0.2\nsd = 0\nrange = [0.1, 0.3]"), Contains("sd: found 0; expected"));
+    CHECK_THAT(complaint("\"normal\"\nmean = 0.2\nsd = -1\nrange = [0.1, 0.3]"), Contains("sd: found -1; expected"));
+    for (const char* numbers : {"\"triangular\"\nrange = [0.1, 0.4, 0.3]", "\"triangular\"\nrange = [0.1, 0.3]",
+                                "\"uniform\"\nrange = [0.3, 0.1]", "\"loguniform\"\nrange = [0.2, 0.2]"})
+        CHECK_THAT(complaint(numbers), Contains("found no range, or one that does not grow"));
+    CHECK_THAT(complaint("\"loguniform\"\nrange = [0, 0.2]"), Contains("found 0; expected numbers above 0"));
+    CHECK_THAT(complaint("\"beta\"\nalpha = 0\nrange = [0.1, 0.2]"), Contains("found alpha 0 and beta 1"));
+}
+
+TEST_CASE("A table of samples has quotes and numbers as frana's own tables have them", "[ensemble]") {
+    const EnsembleFile file;
+    const std::string text = "[ensemble]\ncase = \"case.toml\"\nmethod = \"table\"\ntable = \"rows.csv\"\n";
+    file.write(
+        "rows.csv",
+        "sample,\"release.0.outline\", material.bed.mu\n7, \"a,b.geojson\" ,0.1\n9,\"say \"\"a\"\".geojson\",0.2\r\n");
+    const EnsemblePlan plan = file.read(text);
+    REQUIRE(plan.samples == 2);
+    CHECK(plan.sets_of(0) == std::vector<std::string>{"release.0.outline=a,b.geojson", "material.bed.mu=0.1"});
+    CHECK(plan.sets_of(1) == std::vector<std::string>{"release.0.outline=say \"a\".geojson", "material.bed.mu=0.2"});
+    CHECK(plan.points[1].weight == 1.0);
+    file.write("rows.csv", "material.bed.mu,weight\n0.1,\n");
+    CHECK_THAT(file.complaint(text), Contains("found the weight \"\""));
+    CHECK(shown_value("'a.geojson'") == "a.geojson");
+    CHECK(shown_value("\"a.geojson\"") == "a.geojson");
+    CHECK(shown_value("'t Zand.geojson") == "'t Zand.geojson");
+    CHECK(shown_value("0.5") == "0.5");
+}
+
 TEST_CASE("Sparse rasters hold what exceeds a limit, on the pixels of the whole terrain", "[ensemble]") {
     const GridGeometry whole{6, 4, 0.0, 0.0, 2.0}, part{3, 2, 4.0, 2.0, 2.0};  // from node (2, 1) on
     const std::vector<double> depth = {0.5, 0.05, 0.6, NAN, 0.7, 0.8}, speed = {1.0, 2.0, 3.0, 4.0, NAN, 6.0};

@@ -129,3 +129,13 @@ TEST_CASE("Fewer than six cells across are a remark with the cell that would do"
           "the flow is 4 cells wide (40 m, median over its length); expected 6 or more, or its path and runout hang on "
           "the grid; grid.cell = 5 would do");
 }
+
+TEST_CASE("A width just below the limit is told as less than the limit", "[compare]") {
+    for (const double width : {59.9, 59.99, 59.6}) {
+        const std::string said = width_remark(width, 10.0, true);
+        CAPTURE(said);
+        CHECK(said.find("the flow is 6 cells") == std::string::npos);
+        CHECK(said.find("the flow is 5.9") == 0);
+        CHECK(said.find("(60 m") == std::string::npos);
+    }
+}

@@ -152,6 +152,19 @@ TEST_CASE("A run ends when rest comes, whatever the time between its frames", "[
     }
 }
 
+TEST_CASE("A run that is cut short at once still moves, though nothing went two cells in that time", "[rest]") {
+    Scripted flow;
+    flow.mean = flow.fastest = [](double) { return 5.0; };
+    flow.share = [](double, double speed) { return speed < 5.0 ? 1.0 : 0.0; };
+    Observers none;
+    std::ostringstream stream;
+    Progress progress(stream, Progress::Style::silent, 1.0);
+    const RunSummary summary = run(flow, {1.0, 1.0, false, false, kCell, 0.05}, none, Interrupt(), progress);
+    CHECK(summary.reason == "end");
+    CHECK(summary.slow == Approx(0.05 * 5.0));  // of the largest speed; two cells in 1 s are 10 m/s
+    CHECK(summary.still_moves());
+}
+
 // An avalanche down a parabola with a rough bed, out of a wide slab: its tail comes to rest long after its front.
 TEST_CASE("Running on after rest leaves the deposit and its toe where they are", "[rest]") {
     Scene scene = scene_on(121, 41, 10.0, [](double x, double y) {

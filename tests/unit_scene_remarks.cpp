@@ -136,6 +136,78 @@ TEST_CASE("A release without an outline is said to be all of the terrain", "[sce
     CHECK(remarks(case_of(coulomb + "bed.mu = 0.4"), slope(0.5), "no outline").empty());
 }
 
+TEST_CASE("Friction by raster gets the remarks that a number gets, by its least and its largest value",
+          "[scene][remarks]") {
+    FakeGis gis = slope(0.5);
+    const auto with = [&](const std::string& friction, double low, double high, const std::string& rest = "") {
+        gis.rasters["friction.tif"] = sampled(grid, [&](double x, double) { return x < 1100.0 ? low : high; });
+        return case_of("density = 1500\nbed.law = \"voellmy\"\n" + friction, "2.0", rest);
+    };
+    const std::string angle = "bed.friction_angle_deg = \"friction.tif\"\nbed.xi = 500",
+                      mu = "bed.mu = \"friction.tif\"\nbed.xi = 500", xi = "bed.mu = 0.2\nbed.xi = \"friction.tif\"";
+    CHECK(remark(with(angle, 0.3, 20.0), gis, "friction angle of")
+              .find("bed.friction_angle_deg (the least of its raster): found a friction angle of 0.3 degrees") !=
+          std::string::npos);
+    CHECK(remark(with(mu, 0.2, 10.0), gis, "friction angle of")
+              .find("bed.mu (the largest of its raster): found a friction angle of 84.3 degrees") != std::string::npos);
+    CHECK(remarks(with(mu, 0.0, 0.2), gis, "friction angle of 0 degrees").size() == 1);
+    CHECK(remark(with(xi, 1.0, 500.0), gis, "found 1 m/s^2").find("bed.xi (the least of its raster)") !=
+          std::string::npos);
+    CHECK(remarks(with(mu, 0.1, 0.4), gis, "of its raster").empty());
+    const std::string snow = "[case]\nkind = \"snow\"\n";
+    CHECK(remarks(with(mu, 0.2, 9.0, snow), gis, "found 9; expected ").size() == 1);
+    // Where zones give the number the raster does not count.
+    gis.polygons["east.geojson"] = rectangle(1100, 2000, 1200, 2150);
+    const std::string zone = "[[material.zone]]\noutline = \"east.geojson\"\nmu = 0.3\n";
+    CHECK(remarks(with(mu, 0.2, 10.0, zone), gis, "of its raster").empty());
+}
+
+TEST_CASE("Releases on the same ground are remarked upon with what adds up there", "[scene][remarks]") {
+    FakeGis gis = slope(0.5);
+    gis.polygons["other.geojson"] = rectangle(1090, 2050, 1120, 2080);
+    const auto with = [&](const std::string& rest) {
+        return case_of(coulomb + "bed.mu = 0.4", "2.0",
+                       "[[release]]\noutline = \"other.geojson\"\ndepth = 1.5\n" + rest);
+    };
+    // 10 m by 30 m, where 1.5 m come upon 2 m
+    CHECK(
+        remark(with(""), gis, "of it on release.0")
+            .find(
+                "release.1: found about 300 m2 of it on release.0; expected releases side by side, since their depths "
+                "add up there, to about 450 m3 more") != std::string::npos);
+    CHECK(remarks(with("at = 10\n"), gis, "of it on release.0").empty());
+    gis.polygons["other.geojson"] = rectangle(1100, 2050, 1120, 2080);  // beside it
+    CHECK(remarks(with(""), gis, "of it on release.0").empty());
+}
+
+TEST_CASE("A footprint depth that no release has is remarked upon", "[scene][remarks]") {
+    const auto of = [](const std::string& depth) {
+        return case_of(coulomb + "bed.mu = 0.4", "2.0", "[output]\nfootprint_depth = " + depth + "\n");
+    };
+    CHECK(remark(of("3"), slope(0.5), "footprint_depth")
+              .find("output.footprint_depth: found 3 m, and releases of 2 m at most") != std::string::npos);
+    CHECK(remarks(of("0.1"), slope(0.5), "footprint_depth").empty());
+}
+
+TEST_CASE("A release that is too fast and a gravity of no planet are remarked upon", "[scene][remarks]") {
+    const auto fast = [](const std::string& velocity) {
+        return "[[release]]\noutline = \"release.geojson\"\ndepth = 2.0\nvelocity = " + velocity +
+               "\n[terrain]\ndem = \"dem.tif\"\n[time]\nend = 20\n[material]\n" + coulomb + "bed.mu = 0.4\n";
+    };
+    CHECK(remark(fast("[-120, 100]"), slope(0.5), "found a speed")
+              .find("release.0.velocity: found a speed of 156.2 m/s; expected 150 m/s at most") != std::string::npos);
+    CHECK(remarks(fast("[-120, 0]"), slope(0.5), "found a speed").empty());
+    const auto heavy = [](const std::string& gravity) {
+        return "[terrain]\ndem = \"dem.tif\"\ngravity = " + gravity +
+               "\n[[release]]\noutline = \"release.geojson\"\ndepth = 2.0\n[time]\nend = 20\n[material]\n" + coulomb +
+               "bed.mu = 0.4\n";
+    };
+    for (const char* gravity : {"0.981", "98.1"})
+        CHECK(remarks(heavy(gravity), slope(0.5), "terrain.gravity").size() == 1);
+    for (const char* gravity : {"1.62", "9.81", "24.8"})
+        CHECK(remarks(heavy(gravity), slope(0.5), "terrain.gravity").empty());
+}
+
 TEST_CASE("Fewer than 100 particles are remarked upon", "[scene][remarks]") {
     const auto of = [](int count) {
         return case_of(coulomb + "bed.mu = 0.4", "2",

@@ -200,10 +200,14 @@ double cell_that_resolves(double width) { return round_number_below(width / leas
 
 std::string width_remark(double width, double cell, bool particles) {
     if (!(width < least_cells_across * cell)) return "";
+    // Just below the limit two digits would be the limit's own.
+    constexpr double digits = 100.0, two_digits_differ = 0.05;
+    const bool near = width / cell > least_cells_across - two_digits_differ;
+    const double cells = near ? std::floor(digits * width / cell) / digits : width / cell;
     return fmt::format(
-        "the flow is {:.2g} cells wide ({:.3g} m, median over its length); expected {:g} or more, or its path and "
+        "the flow is {:.{}g} cells wide ({:.{}g} m, median over its length); expected {:g} or more, or its path and "
         "runout hang on the grid{}; grid.cell = {:g} would do",
-        width / cell, width, least_cells_across,
+        cells, near ? 3 : 2, near ? cells * cell : width, near ? 4 : 3, least_cells_across,
         particles ? ", and by a few cells on particles.per_cell (frana converge --per-cell 4,9,16 measures it)" : "",
         cell_that_resolves(width));
 }

@@ -111,6 +111,13 @@ void StructuredRun::node_fields(Frame& frame) {
         const double density = StructuredMap::density_of(body, k),
                      pressure = density * StructuredMap::pressing(body, k) * h,
                      speed = std::sqrt(node.vx * node.vx + node.vy * node.vy + up * up);
+        if (!both_ && !aside_) {
+            // Peaks were noted before the last drift, and the next step notes what stands there now. So no frame is above
+            // its peaks. With water they were noted after it.
+            NodePeak peak = map_.peak(k);
+            peak.note({h, speed, pressure, density}, status_.time, footprint);
+            fields.stand(n, fields.elevation[n], peak, peak.arrival_time(footprint));
+        }
         fields.flow(n, {h, std::sqrt(1.0 + ground.slope_x * ground.slope_x + ground.slope_y * ground.slope_y), node.vx,
                         node.vy, up, speed, pressure});
     });

@@ -176,6 +176,12 @@ private:
             table.wrong("name", fmt::format("found \"{}\" a second time", event.name),
                         "expected another name for each event, since one that is taken twice counts twice",
                         "give name = ..., or take one of them out");
+        std::error_code none_there;
+        for (const SurveyedEvent& other : plan_.events)
+            if (std::filesystem::equivalent(other.runs.case_file, event.runs.case_file, none_there))
+                table.wrong("case", fmt::format("found the case of \"{}\" a second time", other.name),
+                            "expected another case for each event, since one that is taken twice counts twice",
+                            "take one of them out, or give its weight");
         if (!(event.weight > 0.0))
             table.wrong("weight", fmt::format("found {:g}", event.weight), "expected a number above 0", "give one");
         table.refuse_others("here");

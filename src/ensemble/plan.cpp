@@ -241,6 +241,15 @@ const PeakField& peak_field(const std::string& name) {
     throw InternalError("internal error: a field without a meaning");
 }
 
+std::string shown_value(const std::string& value) {
+    if (value.empty() || (value.front() != '"' && value.front() != '\'')) return value;
+    try {
+        return toml::parse("v = " + value)["v"].value_or(value);
+    } catch (const toml::parse_error&) {  // a text that only begins so
+        return value;
+    }
+}
+
 std::vector<std::string> EnsemblePlan::sets_of(Index sample) const {
     std::vector<std::string> sets;
     for (std::size_t k = 0; k < vary.size(); ++k)

@@ -48,6 +48,9 @@ struct EnsemblePlan {
     std::vector<std::string> sets_of(Index sample) const;  ///< "key=value" as for `frana run --set`
 };
 
+/// A value of a sample as a table with commas has it: a text is without the quotes of a case file.
+std::string shown_value(const std::string& value);
+
 /// Node fields that an ensemble can store, with unit and meaning.
 struct PeakField {
     const char *name, *unit, *meaning;

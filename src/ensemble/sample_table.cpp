@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -14,10 +15,11 @@ namespace frana {
 namespace {
 
 constexpr const char* kReturnPeriod = "return_period";
+constexpr const char* kSample = "sample";  ///< numbers of frana's own tables; a sample's is that of its line
 
-/// Names the column's key; false for weights and return periods.
+/// Names the column's key; false for weights, return periods and numbers of samples.
 bool note_key(const std::string& name, const std::string& place, EnsemblePlan& plan, Problems& problems) {
-    if (name == "weight" || name == kReturnPeriod) return false;
+    if (name == "weight" || name == kReturnPeriod || name == kSample) return false;
     const KeyProblem problem = problem_of_key(name, plan.vary);
     if (!problem.found.empty()) problems.add(place, problem.found, problem.expected + ", or weight", problem.way_out);
     plan.vary.emplace_back().key = name;
@@ -49,19 +51,42 @@ std::vector<std::string> comma_fields(const std::string& line) {
     return fields;
 }
 
+std::vector<std::string> quoted_fields(const std::string& line) {
+    std::vector<std::string> fields;
+    const std::size_t end = line.find_last_not_of(" \t\r") + 1;
+    if (end == 0) return fields;
+    std::size_t k = 0;
+    do {
+        k = std::min(line.find_first_not_of(" \t", k), end);
+        std::string field;
+        if (k < end && line[k] == '"') {
+            for (++k; k < end && !(line[k] == '"' && (k + 1 == end || line[k + 1] != '"')); ++k)
+                field += line[k], k += line[k] == '"' ? 1 : 0;  // of two quotes one is meant
+            k = std::min(line.find(',', k), end);
+        } else {
+            const std::size_t comma = std::min(line.find(',', k), end);
+            field = line.substr(k, comma - k);
+            field.erase(field.find_last_not_of(" \t\r") + 1);
+            k = comma;
+        }
+        fields.push_back(std::move(field));
+    } while (k++ < end);
+    return fields;
+}
+
 void read_sample_table(const std::filesystem::path& file, EnsemblePlan& plan, Problems& problems) {
     const std::string text = text_of_file(file);
     plan.table_text = text;
     std::istringstream stream(text);
     std::string line;
     std::getline(stream, line);
-    const std::vector<std::string> names = comma_fields(line);
+    const std::vector<std::string> names = quoted_fields(line);
     std::vector<bool> is_key;
     is_key.reserve(names.size());
     for (const std::string& name : names) is_key.push_back(note_key(name, file.string() + ":1", plan, problems));
     double sum = 0.0;
     for (int number = 2; std::getline(stream, line); ++number) {
-        const std::vector<std::string> fields = comma_fields(line);
+        const std::vector<std::string> fields = quoted_fields(line);
         if (fields.empty()) continue;
         const std::string place = fmt::format("{}:{}", file.string(), number);
         if (fields.size() != is_key.size()) {
@@ -75,6 +100,7 @@ void read_sample_table(const std::filesystem::path& file, EnsemblePlan& plan, Pr
                 point.values.push_back(fields[k]);
                 continue;
             }
+            if (names[k] == kSample) continue;
             (names[k] == kReturnPeriod ? point.return_period : point.weight) =
                 number_of(names[k], fields[k], place, problems);
         }

@@ -147,7 +147,9 @@ private:
             table.wrong("factor", fmt::format("found median {:g} and factor {:g}", of.middle, of.spread),
                         "expected a median above 0 and a factor above 1", "give such");
         constexpr double nothing = 1e-9;  // of the distribution
-        if (free && of.spread > 0.0 && of.low < of.high && !(of.share_between() > nothing))
+        const bool has_shape =
+            of.kind == Kind::lognormal ? of.spread > 1.0 && of.middle > 0.0 : free && of.spread > 0.0;
+        if (has_shape && of.low < of.high && !(of.share_between() > nothing))
             table.wrong("range", fmt::format("found {:g} to {:g}, far out in the distribution", of.low, of.high),
                         "expected a range that it is likely to lie in", "give another range, or another middle");
         if (!(of.alpha > 0.0 && of.beta > 0.0))

@@ -220,6 +220,26 @@ std::string scale_line(const Place& place, double metres) {
         warp_line(input, metric_crs(place), "_utm"), metres ? " (its elevations are taken as metres)" : ""));
 }
 
+/// Of a local CRS no program knows a way to metres. The numbers at the raster's corners do.
+[[noreturn]] void refuse_local(const Place& place, const Unit& unit) {
+    const std::string begin =
+        "gdal_translate -a_srs " + shell_word("LOCAL_CS[\"metres\",UNIT[\"metre\",1]]") + " -a_ullr ";
+    std::string corners = "XMIN YMAX XMAX YMIN";
+    const Dataset raster(GDALDataset::Open(place.file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
+    double t[6];
+    if (raster && raster->GetGeoTransform(t) == CE_None) {
+        const double m = unit.metres;
+        corners =
+            fmt::format("{:.12g} {:.12g} {:.12g} {:.12g}", m * t[0], m * t[3],
+                        m * (t[0] + raster->GetRasterXSize() * t[1]), m * (t[3] + raster->GetRasterYSize() * t[5]));
+    }
+    throw UserError(
+        fmt::format("{}: its local CRS is in {}; expected metres; run: {} {} {} (its elevations are taken "
+                    "as metres)",
+                    place.file.string(), unit.name, begin + corners, shell_word(place.file.string()),
+                    shell_word(sibling(place.file, "_metres"))));
+}
+
 /// A map whose lengths are not those on the ground, such as Web Mercator's.
 void require_true_lengths(const Place& place) {
     const auto scale = map_scale(*place.crs, place.centre);
@@ -313,6 +333,10 @@ void require_metres(const Place& place, std::vector<std::string>& log) {
     if (!place.crs || place.crs->IsEmpty()) {
         log.push_back(name + ": no CRS; its coordinates are taken as local metres");
     } else if (place.crs->IsLocal()) {
+        const char* unit = nullptr;
+        const double metres = place.crs->GetLinearUnits(&unit);
+        if (std::abs(metres - 1.0) > unit_tolerance)
+            refuse_local(place, Unit{metres, unit ? unit : "a unit that is not the metre"});
         log.push_back(name + ": local CRS; its coordinates are taken as local metres");
     } else if (place.crs->IsGeographic() || place.crs->IsGeocentric() || !place.crs->IsProjected()) {
         refuse_plane(place, fmt::format("its CRS is {}, which is {}", crs_name(*place.crs),

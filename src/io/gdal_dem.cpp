@@ -111,6 +111,8 @@ Raster GdalReader::read_dem(const std::filesystem::path& file, const DemRequest&
         file, &raster.crs(), {0.5 * (used[0] + used[2]), 0.5 * (used[1] + used[3])}, raster.unit(), raster.scaled()};
     gdal::require_metres(place, log);
     remark_named_feet(raster, log);
+    if (raster.has_palette())
+        log.push_back(raster.name() + ": has a palette, its numbers are used; is this a picture rather than a field?");
     const auto window = checked_window(raster, request);
     const double pixel = std::min(raster.x_axis().size, raster.y_axis().size);
     const double cell = request.cell.value_or(pixel);

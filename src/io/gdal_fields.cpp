@@ -32,6 +32,12 @@ bool needs_warp(const RasterFile& raster, const std::string& crs_wkt) {
     return !gdal::same_crs(raster.crs(), gdal::crs_from_wkt(crs_wkt));
 }
 
+/// A raster without a CRS lies where its numbers say on the terrain's map.
+void note_no_crs(const RasterFile& raster, const std::string& crs_wkt, std::vector<std::string>& log) {
+    if (!crs_wkt.empty() && (raster.crs().IsEmpty() || raster.crs().IsLocal()))
+        log.push_back(raster.name() + ": no CRS; coordinates are taken as the terrain's own");
+}
+
 gdal::Transformation transformation(const RasterFile& raster, const OGRSpatialReference& from,
                                     const OGRSpatialReference& to) {
     const gdal::Messages messages;
@@ -175,6 +181,7 @@ void note_gaps(const RasterFile& raster, const GridGeometry& grid, std::vector<s
 Raster in_pixels(const std::filesystem::path& file, const std::array<double, 4>& extent, const std::string& crs_wkt,
                  const char* method, std::vector<std::string>& log) {
     const RasterFile raster(file, gdal::Meaning::any, log);
+    note_no_crs(raster, crs_wkt, log);
     if (needs_warp(raster, crs_wkt)) {
         Source source(raster, gdal::crs_from_wkt(crs_wkt), extent);
         const double edge = source.pixel_edge();
@@ -256,6 +263,7 @@ Raster GdalReader::read_mask(const std::filesystem::path& file, const std::array
 Raster GdalReader::read_onto(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
                              std::vector<std::string>& log) const {
     const RasterFile raster(file, gdal::Meaning::any, log);
+    note_no_crs(raster, crs_wkt, log);
     if (needs_warp(raster, crs_wkt)) {
         Source source(raster, gdal::crs_from_wkt(crs_wkt), grid.pixel_extent());
         log.push_back(fmt::format("{}: reprojected from {} to the terrain's CRS and {:.6g} m cells", raster.name(),

@@ -96,6 +96,8 @@ std::array<double, 4> RasterFile::extent() const {
     return {x_.start, y_.start, x_.start + double(x_.count) * x_.size, y_.start + double(y_.count) * y_.size};
 }
 
+bool RasterFile::has_palette() const { return band_->GetColorTable() != nullptr; }
+
 std::string RasterFile::description() const {
     std::string text = band_->GetDescription();
     for (char** items : {dataset_->GetMetadata(), band_->GetMetadata()})

@@ -29,6 +29,7 @@ public:
     const std::string& unit() const { return unit_; }
     bool scaled() const { return scale_ != 1.0 || offset_ != 0.0; }  ///< what is stored are other numbers
     /// What the file says of itself and of its band, in words.
+    bool has_palette() const;  ///< its numbers stand for colours
     std::string description() const;
     const std::filesystem::path& file() const { return file_; }
     std::string name() const { return file_.filename().string(); }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "base/error.h"
 #include "base/layer_name.h"
@@ -83,6 +84,35 @@ void require_vector_crs(const LayerName& name, const OGRSpatialReference& terrai
     }
 }
 
+/// A mask has one number or two, and a footprint leaves something out. Elevations are many numbers, and large or
+/// everywhere.
+void refuse_elevations(const std::vector<double>& values, const fs::path& file, std::vector<std::string>& log) {
+    constexpr double kLarge = 100.0;  // [m]; no flow is as deep over half of its extent
+    constexpr std::size_t kOfMask = 2;
+    std::set<double> numbers;
+    Index known = 0, above = 0, large = 0;
+    for (const double value : values) {
+        if (std::isnan(value)) continue;
+        ++known, above += value > 0.0, large += value > kLarge;
+        if (numbers.size() <= kOfMask) numbers.insert(value);
+    }
+    if (numbers.size() <= kOfMask) return;
+    const double highest = *std::max_element(values.begin(), values.end(), [](double a, double b) {
+        return std::isnan(b) ? false : std::isnan(a) || a < b;
+    });
+    if (2 * large > known)
+        throw UserError(
+            fmt::format("{}: found values of up to {:.4g}, on {:.3g} % of the pixels more than {:g}; "
+                        "expected a surveyed extent, above 0 where the flow was, not elevations; name the "
+                        "extent's file",
+                        file.string(), highest, 100.0 * double(large) / double(known), kLarge));
+    if (above == known)
+        log.push_back(
+            fmt::format("{}: found values above 0, up to {:.4g}, in all of its pixels; expected a surveyed "
+                        "extent, above 0 where the flow was, not elevations; check the raster",
+                        file.string(), highest));
+}
+
 /// The pixels above 0 as polygons in the coordinates of the terrain.
 Polygons from_mask(const fs::path& file, const std::string& crs_wkt, std::vector<std::string>& log) {
     const gdal::RasterFile raster(file, gdal::Meaning::any, log);
@@ -99,6 +129,7 @@ Polygons from_mask(const fs::path& file, const std::string& crs_wkt, std::vector
     }
     const PixelAxis &x = raster.x_axis(), &y = raster.y_axis();
     const std::vector<double> values = raster.read(0, 0, x.count, y.count);
+    refuse_elevations(values, file, log);
     std::vector<std::uint8_t> mask(values.size());
     for (std::size_t k = 0; k < values.size(); ++k) mask[k] = values[k] > 0.0;
     Polygons polygons;

@@ -110,6 +110,11 @@ OGRLayer* chosen_layer(const Source& source) {
         throw UserError(fmt::format("{}: has {} layers ({}); expected one, or its name; give {}{}{}",
                                     source.file.string(), layers.size(), names_of(layers), source.name(), kLayerMark,
                                     layers.front()->GetName()));
+    if (!layers.empty() && std::filesystem::is_directory(source.file) && source.file.extension() != ".gdb")
+        source.log.push_back(
+            fmt::format("{}: found a folder, of which the only layer \"{}\" is read; expected a file; "
+                        "name it, unless this is meant",
+                        source.file.string(), layers.front()->GetName()));
     return layers.empty() ? nullptr : layers.front();
 }
 

@@ -42,6 +42,17 @@ void remark_on_virtual_mass(const std::optional<WaterBudget>& water, const RunSu
          gained / stake});
 }
 
+/// A limit that nothing ever exceeded: footprint, arrival and runout are then of nothing.
+void remark_on_footprint(const Simulation& simulation, const RunSummary& summary, std::vector<EndRemark>& remarks) {
+    const Extremes& most = summary.extremes;
+    if (!has_answer(summary.reason) || most.max_covered_area > 0.0 || !(most.max_depth > 0.0)) return;
+    if (simulation.extras().water) return;  // whose surface is not among what is covered
+    remarks.push_back({fmt::format(
+        "output.footprint_depth: found a flow of {:.4g} m at most, nowhere deeper than that depth; expected "
+        "some that is; the footprint is empty, so give a smaller output.footprint_depth",
+        most.max_depth)});
+}
+
 bool is_digit(char letter) { return std::isdigit(static_cast<unsigned char>(letter)) != 0; }
 bool is_of_word(char letter) { return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '_'; }
 
@@ -84,6 +95,7 @@ std::vector<EndRemark> remarks_at_end(const Simulation& simulation, const RunSum
     for (std::string& text : simulation.remarks()) remarks.push_back({std::move(text)});
     remark_on_energy(summary, remarks);
     remark_on_virtual_mass(simulation.extras().water, summary, remarks);
+    remark_on_footprint(simulation, summary, remarks);
     return remarks;
 }
 

@@ -129,6 +129,9 @@ RunSummary Loop::run() {
             step_past_outputs();
         }
         summary_.slow = rest_.slow_at(simulation_.status().time);
+        // Early on that is faster than anything moves. What was cut short then still moves.
+        if (summary_.time_is_over())
+            summary_.slow = std::min(summary_.slow, plan_.rest_fraction * summary_.extremes.max_speed);
         summary_.motion = simulation_.motion({summary_.slow, simulation_.status().time});
         save_state();
         show_end();

@@ -41,6 +41,7 @@ public:
         read_releases();
         read_survey(case_, reader_, scene_, problems_);
         read_friction(case_, reader_, friction_by_table(case_) ? released() : 0.0, scene_, problems_);
+        remark_on_friction_rasters(case_, scene_);
         read_profiles_and_gauges();
         scene_.sections = read_sections(case_, reader_, scene_, problems_);
         read_inflows(case_, reader_, scene_, problems_);
@@ -59,6 +60,8 @@ public:
         require_room_for_all();
         problems_.throw_if_any();
         remark_on_releases(case_, built_.releases, scene_);
+        remark_on_overlaps(case_, releases_, built_.releases, scene_);
+        remark_on_footprint_depth(case_, built_.releases, scene_);
         remark_on_releases_in_boxes(scene_);
         remark_on_fields(case_, scene_);
         cut_releases();
@@ -182,6 +185,7 @@ private:
                     const NodeMarks marks = nodes_under(release, scene_.bed.geometry);
                     if (std::count(marks.begin(), marks.end(), 1) == 0) throw UserError(no_material(release));
                     refuse_nodata(marks, scene_.bed, nodata_reach);
+                    remark_on_speed(case_, i, release, scene_);
                     releases_.push_back(std::move(release));
                     nodes_of_releases_.push_back(double(std::count(marks.begin(), marks.end(), 1)));
                     summarise(i, marks);

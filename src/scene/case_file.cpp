@@ -127,6 +127,16 @@ std::vector<std::pair<std::string, std::filesystem::path>> CaseFile::named_files
     return files;
 }
 
+std::vector<std::filesystem::path> CaseFile::files_of_set(const std::string& set) const {
+    CaseFile with = *this;
+    with.settings_.clear();  // of tables there are as many as before
+    Problems said_by_the_run;
+    CaseReader(with, said_by_the_run).apply_set(set);
+    std::vector<std::filesystem::path> files;
+    for (const auto& [key, path] : with.named_files()) files.push_back(path);
+    return files;
+}
+
 std::vector<std::filesystem::path> CaseFile::inputs() const {
     std::vector<std::filesystem::path> files = {file_};
     for (const auto& [key, path] : named_files()) files.push_back(path);

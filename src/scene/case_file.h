@@ -63,6 +63,8 @@ public:
     std::filesystem::path resolve(const std::string& path) const;
     /// Every file that the given keys name, as it is to be opened, with its key. A key may name several.
     std::vector<std::pair<std::string, std::filesystem::path>> named_files() const;
+    /// The files that `set`, as of --set, would name, as they are to be opened. None where it names none, or is wrong.
+    std::vector<std::filesystem::path> files_of_set(const std::string& set) const;
     /// The case file, then those: what the case reads.
     std::vector<std::filesystem::path> inputs() const;
     /// "case.toml:12: grid.cell", the place of a key for messages; for an absent key, that of its table.

@@ -39,6 +39,12 @@ const std::vector<RemarkRow>& remark_table() {
         {Remark::release_depth, "depth of the release", -none, 100.0,
          "found a depth of up to {value:.4g} m; expected {high:g} m at most; check the unit of the depth, or the "
          "surface"},
+        {Remark::release_speed, "speed of the release", -none, 150.0,
+         "found a speed of {value:.4g} m/s; expected {high:g} m/s at most, since no landslide is faster; check the "
+         "unit "
+         "of the velocity"},
+        {Remark::gravity, "gravity", 1.0, 30.0,
+         "found {value:.4g} m/s^2; expected {low:g} to {high:g}; check its unit"},
         {Remark::rain, "rain", -none, 1e-4,
          "found up to {value:.3g} m/s; expected {high:g} m/s at most, which is 360 mm in an hour; check whether it was "
          "given in mm/h"},

@@ -18,6 +18,8 @@ enum class Remark {
     size_class,
     release_slope,
     release_depth,
+    release_speed,
+    gravity,
     rain,
     few_particles,
     depth_without_data,

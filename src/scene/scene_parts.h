@@ -38,12 +38,22 @@ bool comes_onto(const Polyline& line, const std::array<double, 4>& extent);
 /// particles. The remarks go to the scene's log.
 void remark_on_terrain(const CaseFile& file, Scene& scene);
 void remark_on_material(const CaseFile& file, Scene& scene);
+/// The same remarks on friction by rasters, of their least and their largest value on the ground. The scene has its
+/// friction.
+void remark_on_friction_rasters(const CaseFile& file, Scene& scene);
 /// A remark where the class of size that a case gives for its snow is not that of the volume. `released`: by all releases
 /// [m3]; the scene has its inflows.
 void remark_on_size(const CaseFile& file, double released, Scene& scene);
 /// A remark on each field of the output that no frame of this case has.
 void remark_on_fields(const CaseFile& file, Scene& scene);
 void remark_on_releases(const CaseFile& file, const std::vector<ReleaseSummary>& releases, Scene& scene);
+/// A remark on a speed of [[release]] number `i` that no mass has.
+void remark_on_speed(const CaseFile& file, Index i, const Release& release, Scene& scene);
+/// A remark on a footprint depth that no release has, where nothing else can become deeper.
+void remark_on_footprint_depth(const CaseFile& file, const std::vector<ReleaseSummary>& releases, Scene& scene);
+/// A remark on each two [[release]] that enter at the same time where they overlap: their depths add up there.
+void remark_on_overlaps(const CaseFile& file, const std::vector<Release>& all,
+                        const std::vector<ReleaseSummary>& summaries, Scene& scene);
 /// A remark on the pixels without data where a release claims material.
 void remark_on_gaps(const Raster& field, const NodeMarks& claimed, const std::string& place,
                     std::vector<std::string>& log);

@@ -69,22 +69,26 @@ void remark_feet(Scene& scene, const std::string& place) {
     remark_on(scene.log, Remark::high_as_in_feet, place, {highest, 0.0, files});
 }
 
-/// A given number outside of the range for the kind of mass. Its meaning is that of the key `meaning`.
-void remark_on_kind(const CaseFile& file, const std::string& key, const std::string& meaning, Scene& scene) {
-    if (!file.given(key) || file.is_text(key)) return;
+/// A value outside of the range for the kind of mass. Its meaning is that of the key `meaning`.
+void judge_by_kind(const CaseFile& file, const std::string& place, double value, const std::string& meaning,
+                   Scene& scene) {
     const std::string& kind = file.word("case.kind");
     const RangeKey known = range_key(meaning);
     const std::optional<Plausible> range = plausible(kind, known.key, file.word("material.bed.law"));
     if (!range || range->low == range->high) return;  // one value that was published is no limit
     constexpr double round_off = 1e-9;
-    const double value = file.number(key), low = known.scale(range->low), high = known.scale(range->high);
+    const double low = known.scale(range->low), high = known.scale(range->high);
     if (value >= low * (1.0 - round_off) && value <= high * (1.0 + round_off)) return;
     const std::string& unit = find_parameter(meaning)->unit;
-    remark_on(scene.log, Remark::kind_range, file.place(key),
+    remark_on(scene.log, Remark::kind_range, place,
               {value, 0.0, fmt::format("{:.4g} to {:.4g}{} for {}", low, high, after_number(unit), kind)});
 }
 
-/// Of all zones as well; rasters are not checked.
+void remark_on_kind(const CaseFile& file, const std::string& key, const std::string& meaning, Scene& scene) {
+    if (file.given(key) && !file.is_text(key)) judge_by_kind(file, file.place(key), file.number(key), meaning, scene);
+}
+
+/// Of all zones as well. Rasters are judged once they are read.
 void remark_on_kind(const CaseFile& file, Scene& scene) {
     if (!file.has("case.kind")) return;
     // The kind's density is that of what flows: of grains and water together.
@@ -138,6 +142,37 @@ std::string why_without(const Scene& scene, const std::string& field) {
     return "";
 }
 
+void judge_angle(const CaseFile& file, const std::string& place, double degrees, Scene& scene) {
+    if (degrees == 0.0 && file.word("material.bed.law") == bed::Manning::name) return;  // his term alone
+    remark_on(scene.log, Remark::friction, place, {degrees});
+}
+
+/// Of a number of a law, what all nodes of the ground have that no zone gives it. Empty where all are of zones.
+FrictionPart::Extent extent_without_zones(const CaseFile& file, const Scene& scene, const std::string& in_zone) {
+    FrictionPart::Extent all{in_zone, "", INFINITY, -INFINITY};
+    for (const FrictionPart& part : scene.friction->parts) {
+        const std::string zone = part.name.substr(0, part.name.find(' '));
+        const bool is_zone = zone.rfind("material.zone.", 0) == 0;
+        if (is_zone && file.given(zone + "." + in_zone)) continue;
+        for (const FrictionPart::Extent& extent : part.extents)
+            if (extent.key == in_zone)
+                all.low = std::min(all.low, extent.low), all.high = std::max(all.high, extent.high);
+    }
+    return all;
+}
+
+/// An end of what a raster holds, for a key of that name in the tables of friction.
+void judge_end(const CaseFile& file, const std::string& key, const char* end, double value, Scene& scene) {
+    const std::string place = fmt::format("{} (the {} of its raster)", file.place(key), end);
+    const std::string name = key.substr(key.rfind('.') + 1);
+    if (name == "friction_angle_deg") judge_angle(file, place, value, scene);
+    if (name == "mu" || name == "mu_s" || name == "mu_2")
+        judge_angle(file, place, std::atan(value) * constants::kRadian, scene);
+    if (name == "xi") remark_on(scene.log, Remark::xi, place, {value});
+    const bool of_kind = find_parameter(key) && !range_key(key).key.empty() && name != "mu_s" && name != "mu_2";
+    if (of_kind && file.has("case.kind")) judge_by_kind(file, place, value, key, scene);
+}
+
 /// A depth without an outline is that of all of the terrain, which is seldom meant.
 void remark_on_whole_terrain(const CaseFile& file, const ReleaseSummary& release, Scene& scene) {
     const std::string prefix = fmt::format("release.{}.", release.table);
@@ -154,6 +189,7 @@ void remark_on_whole_terrain(const CaseFile& file, const ReleaseSummary& release
 
 void remark_on_terrain(const CaseFile& file, Scene& scene) {
     const std::string place = file.place("terrain.dem");
+    remark_on(scene.log, Remark::gravity, file.place("terrain.gravity"), {scene.gravity});
     remark_zero_margin(scene, place);
     remark_feet(scene, place);
 }
@@ -167,9 +203,7 @@ void remark_on_material(const CaseFile& file, Scene& scene) {
     const auto angle = [&](const std::string& key, bool tangent) {
         if (!file.given(key) || file.is_text(key)) return;
         const double value = file.number(key);
-        if (value == 0.0 && file.word("material.bed.law") == bed::Manning::name) return;  // his term alone
-        remark_on(scene.log, Remark::friction, file.place(key),
-                  {tangent ? std::atan(value) * constants::kRadian : value});
+        judge_angle(file, file.place(key), tangent ? std::atan(value) * constants::kRadian : value, scene);
     };
     const auto xi = [&](const std::string& key) {
         if (file.given(key) && !file.is_text(key))
@@ -186,6 +220,44 @@ void remark_on_material(const CaseFile& file, Scene& scene) {
     angle("material.structure.friction_angle_deg", false);
     for (Index i = 0; i < file.count("stage"); ++i) angle(fmt::format("stage.{}.friction_angle_deg", i), false);
     remark_on_kind(file, scene);
+}
+
+void remark_on_friction_rasters(const CaseFile& file, Scene& scene) {
+    if (!scene.friction) return;
+    for (const std::string& key : rasters_of_laws(file)) {
+        const bool of_bed = key.rfind("material.bed.", 0) == 0, of_rheology = key.rfind("material.rheology.", 0) == 0;
+        if (!of_bed && !of_rheology) continue;
+        const std::string name = key.substr(key.rfind('.') + 1), in_zone = of_bed ? name : "rheology." + name;
+        const bool degrees = name == "friction_angle_deg";  // laws have the tangent
+        const FrictionPart::Extent found = extent_without_zones(file, scene, degrees ? "mu" : in_zone);
+        const auto of_key = [&](double value) { return degrees ? std::atan(value) * constants::kRadian : value; };
+        if (found.low > found.high) continue;
+        judge_end(file, key, "least", of_key(found.low), scene);
+        if (found.high > found.low) judge_end(file, key, "largest", of_key(found.high), scene);
+    }
+}
+
+void remark_on_speed(const CaseFile& file, Index i, const Release& release, Scene& scene) {
+    double fastest = release.velocity.norm();
+    const auto largest = [](const std::optional<Raster>& part) {
+        double most = 0.0;
+        for (const double value : part ? part->values : std::vector<double>()) most = std::fmax(most, std::abs(value));
+        return most;
+    };
+    fastest = std::max({fastest, largest(release.velocity_x), largest(release.velocity_y)});
+    remark_on(scene.log, Remark::release_speed, file.place(fmt::format("release.{}.velocity", i)), {fastest});
+}
+
+void remark_on_footprint_depth(const CaseFile& file, const std::vector<ReleaseSummary>& releases, Scene& scene) {
+    if (releases.empty() || !scene.inflows.empty() || scene.water || scene.bed_changes()) return;
+    double deepest = 0.0;
+    for (const ReleaseSummary& release : releases) deepest = std::max(deepest, release.max_depth);
+    if (scene.output.footprint_depth < deepest) return;
+    scene.log.push_back(
+        fmt::format("{}: found {:.4g} m, and releases of {:.4g} m at most; expected less than these, or the footprint "
+                    "is empty unless "
+                    "the flow becomes deeper; give a smaller depth",
+                    file.place("output.footprint_depth"), scene.output.footprint_depth, deepest));
 }
 
 void remark_on_size(const CaseFile& file, double released, Scene& scene) {

@@ -32,10 +32,13 @@ std::string optimum_section(const Calibration& c, double best) {
     const Optimum& optimum = *c.optimum;
     const std::string noise =
         optimum.noise ? fmt::format("is {:.2g}", *optimum.noise) : "is not known, since its neighbours have no answers";
+    const std::string before = fmt::format("{:.4g}", -best), after = fmt::format("{:.4g}", optimum.misfit);
+    const std::string way = before == after ? fmt::format("did not fall from {}", before)
+                                            : fmt::format("fell from {} to {}", before, after);
     return fmt::format(
-               "\nThe optimum was searched from the best point, {} more points of all events: the misfit fell from "
-               "{:.4g} to {:.4g}, where its noise {}. The end: {}.\n",
-               optimum.evaluations, -best, optimum.misfit, noise, optimum.ended) +
+               "\nThe optimum was searched from the best point, {} more points of all events: the misfit {}, where its "
+               "noise {}. The end: {}.\n",
+               optimum.evaluations, way, noise, optimum.ended) +
            (optimum.noise.value_or(0.0) > 1.0
                 ? "\nA noise above 1 is much: which of two neighbours has the weight is chance. "
                   "Give a larger sigma, or more samples.\n"

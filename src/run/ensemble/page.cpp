@@ -87,7 +87,7 @@ std::string nearest_section(const EnsemblePlan& plan, const std::vector<SampleRe
     for (std::size_t k = 0; k < std::min(shown, runs.size()); ++k) {
         page += fmt::format("\n| {} | {:.1f} | {:.3f} |", runs[k]->sample, *runs[k]->boundary, *runs[k]->iou);
         for (const std::string& value : plan.points[static_cast<std::size_t>(runs[k]->sample)].values)
-            page += fmt::format(" {} |", value);
+            page += fmt::format(" {} |", shown_value(value));
     }
     return page;
 }
@@ -253,7 +253,7 @@ void write_runs(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBas
     for (const SampleResult& r : results) {
         const SamplePoint& point = plan.points[static_cast<std::size_t>(r.sample)];
         file.put("{},{}", r.sample, point.weight);
-        for (const std::string& value : point.values) file.put(",{}", csv_field(value));
+        for (const std::string& value : point.values) file.put(",{}", csv_field(shown_value(value)));
         file.put(",{},{},{}", r.reason, r.time, r.steps);
         const auto known = [&](const std::optional<double>& number) {  // of a run without an answer nothing is
             file.put(",{}", r.ended() ? text_of_known(number) : "");
@@ -294,7 +294,7 @@ std::string samples_table(const EnsemblePlan& plan) {
     for (Index i = 0; i < plan.samples; ++i) {
         const SamplePoint& point = plan.points[static_cast<std::size_t>(i)];
         text += fmt::format("{},{}", i, point.weight);
-        for (const std::string& value : point.values) text += "," + csv_field(value);
+        for (const std::string& value : point.values) text += "," + csv_field(shown_value(value));
         text += "\n";
     }
     return text;

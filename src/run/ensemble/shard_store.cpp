@@ -24,8 +24,8 @@ constexpr std::size_t kAtOnce = 64;            ///< runs in a file, when they ar
 constexpr std::chrono::seconds kPatience{10};  ///< and when they are slow
 constexpr const char* kColumns =
     "sample,reason,time_s,steps,seconds,volume_m3,runout_m,reach_m,footprint_area_m2,max_depth_m,max_speed_m_s,"
-    "eroded_m3,deposited_m3,left_share,mass_error,iou,boundary_m,still_moves,peaks,message,remarks";
-constexpr std::size_t kColumnCount = 21;
+    "eroded_m3,deposited_m3,left_share,mass_error,iou,boundary_m,still_moves,peaks,inputs,message,remarks";
+constexpr std::size_t kColumnCount = 22;
 constexpr std::size_t kGaugeColumns = 3;  ///< of each gauge, behind those
 
 std::string columns_of(const std::vector<Gauge>& gauges) {
@@ -35,12 +35,13 @@ std::string columns_of(const std::vector<Gauge>& gauges) {
 }
 
 /// Of what was refused before its first step there are no gauges: their fields are empty too.
-std::string row_of(const SampleResult& r, const std::string& peaks, std::size_t gauges) {
+/// `inputs`: a sum of the files that the sample's values name.
+std::string row_of(const SampleResult& r, const std::string& peaks, const std::string& inputs, std::size_t gauges) {
     std::string row =
-        fmt::format("{},{},{},{},{:.3f},{},{},{},{},{},{},{},{},{},{},{},{},{:d},{},{},{}", r.sample, r.reason, r.time,
-                    r.steps, r.seconds, r.volume, r.runout, r.reach, r.footprint_area, r.max_depth, r.max_speed,
+        fmt::format("{},{},{},{},{:.3f},{},{},{},{},{},{},{},{},{},{},{},{},{:d},{},{},{},{}", r.sample, r.reason,
+                    r.time, r.steps, r.seconds, r.volume, r.runout, r.reach, r.footprint_area, r.max_depth, r.max_speed,
                     r.eroded, r.deposited, r.left_share, r.mass_error, text_of_known(r.iou), text_of_known(r.boundary),
-                    r.still_moves, peaks, plain_field(r.message), remarks_field(r.remarks));
+                    r.still_moves, peaks, inputs, plain_field(r.message), remarks_field(r.remarks));
     for (std::size_t k = 0; k < gauges; ++k) {
         const GaugePeak peak = k < r.gauges.size() ? r.gauges[k] : GaugePeak();
         row +=
@@ -49,8 +50,13 @@ std::string row_of(const SampleResult& r, const std::string& peaks, std::size_t 
     return row + "\n";
 }
 
-/// A row, and the file of its peaks.
-std::pair<SampleResult, std::string> result_of(const fs::path& file, const std::string& line, std::size_t gauges) {
+/// A row as it was stored.
+struct KeptRow {
+    SampleResult result;
+    std::string peaks, inputs;  ///< the file of its peaks, and the sum of the files that its values name
+};
+
+KeptRow result_of(const fs::path& file, const std::string& line, std::size_t gauges) {
     const std::vector<std::string> f = comma_fields(line);
     if (f.size() != kColumnCount + kGaugeColumns * gauges) throw broken_row(file, line);
     SampleResult r;
@@ -64,17 +70,36 @@ std::pair<SampleResult, std::string> result_of(const fs::path& file, const std::
             return f[k].empty() ? std::nullopt : std::optional<double>(kept_number(f[k]));
         };
         r.iou = known(15), r.boundary = known(16);
-        r.still_moves = kept_number(f[17]) != 0.0, r.message = f[19], r.remarks = remarks_of_field(f[20]);
+        r.still_moves = kept_number(f[17]) != 0.0, r.message = f[20], r.remarks = remarks_of_field(f[21]);
         for (std::size_t k = kColumnCount; k < f.size(); k += kGaugeColumns)
             r.gauges.push_back({known(k), known(k + 1), known(k + 2)});
     } catch (const std::logic_error&) {  // what the conversions say of text that is no number
         throw broken_row(file, line);
     }
-    return {r, f[18]};
+    return {std::move(r), f[18], f[19]};
 }
 
 RowsOf rows_of(const EnsemblePlan& plan, const EnsembleBase& base) {
     return {"ensemble", mark_of(plan), columns_of(base.gauges)};
+}
+
+/// Runs under one name must be runs of one file.
+void require_same_inputs(const fs::path& file, Index sample, const std::string& inputs, const ValueSums& now) {
+    if (inputs == now.of(sample)) return;
+    throw UserError(fmt::format(
+        "{}: found sample {} made with another content of {}; expected runs of the same ensemble; choose another "
+        "folder with --out, or give the files back that these runs were made with",
+        file.string(), sample, now.values_of(sample)));
+}
+
+/// Only of methods that can be prolonged: of others the number of samples decides all of them.
+void require_no_more(const fs::path& dir, std::size_t runs, Index last, const EnsemblePlan& plan) {
+    if (last < plan.samples) return;
+    throw UserError(
+        fmt::format("{}: found {} runs, the last of them sample {}, where samples is {}; expected no fewer samples "
+                    "than there were; "
+                    "give samples = {}, or choose another folder with --out",
+                    (dir / "shards").string(), runs, last, plan.samples, last + 1));
 }
 
 std::vector<fs::path> row_files(const fs::path& dir) {
@@ -149,7 +174,7 @@ bool has_runs_of(const fs::path& dir, const EnsemblePlan& plan) {
 }
 
 ShardStore::ShardStore(fs::path folder, const EnsemblePlan& plan, const EnsembleBase& base)
-    : folder_(std::move(folder)), plan_(plan), base_(base), rows_(text_in(folder_ / "runs.csv")) {
+    : folder_(std::move(folder)), plan_(plan), base_(base), sums_(plan), rows_(text_in(folder_ / "runs.csv")) {
     if (rows_.empty()) rows_ = rows_of(plan, base).head();
 }
 
@@ -175,7 +200,7 @@ void ShardStore::write() {
     const std::string peaks = block.samples.empty() ? "" : new_peaks_file(block.samples.front());
     if (!block.samples.empty()) write_peaks(folder_ / peaks, block);
     for (const SampleResult& result : waiting_)
-        rows_ += row_of(result, result.ended() ? peaks : "", base_.gauges.size());
+        rows_ += row_of(result, result.ended() ? peaks : "", sums_.of(result.sample), base_.gauges.size());
     write_text(folder_ / "runs.csv", rows_);
     waiting_.clear();
     broken_ = false;
@@ -192,11 +217,13 @@ std::string ShardStore::new_peaks_file(Index first) const {
 KeptResults read_results(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBase& base) {
     std::map<Index, std::pair<SampleResult, fs::path>> by_sample;
     const RowsOf of = rows_of(plan, base);
+    const ValueSums sums(plan);
     for (const fs::path& file : row_files(dir)) {
         for_each_row(file, of, [&](const std::string& line) {
-            auto [result, name] = result_of(file, line, base.gauges.size());
+            auto [result, name, inputs] = result_of(file, line, base.gauges.size());
             const Index sample = result.sample;
-            if (sample < 0 || sample >= plan.samples || result.ended() == name.empty()) throw broken_row(file, line);
+            if (sample < 0 || result.ended() == name.empty()) throw broken_row(file, line);
+            if (sample < plan.samples && result.ended()) require_same_inputs(file, sample, inputs, sums);
             std::pair row{std::move(result), name.empty() ? fs::path() : file.parent_path() / name};
             const auto before = by_sample.find(sample);
             if (before == by_sample.end())
@@ -205,6 +232,7 @@ KeptResults read_results(const fs::path& dir, const EnsemblePlan& plan, const En
                 before->second = std::move(row);
         });
     }
+    require_no_more(dir, by_sample.size(), by_sample.empty() ? -1 : by_sample.rbegin()->first, plan);
     KeptResults kept;
     for (auto& [sample, row] : by_sample)
         kept.results.push_back(std::move(row.first)), kept.peaks_files.push_back(std::move(row.second));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ensemble/sample_run.h"
+#include "run/ensemble/value_sums.h"
 
 namespace frana {
 
@@ -47,6 +48,7 @@ private:
     std::filesystem::path folder_;
     const EnsemblePlan& plan_;
     const EnsembleBase& base_;
+    ValueSums sums_;  ///< as the files are before the first run
     std::string rows_;
     bool broken_ = false;
     std::vector<SampleResult> waiting_;
@@ -70,7 +72,7 @@ struct KeptResults {
 };
 
 /// Rows of all shards in a folder. Throws UserError when a file cannot be read, or belongs to another ensemble (what differs is
-/// said).
+/// said). So it does for a run whose values name a file that has changed, and for more runs than there are samples.
 KeptResults read_results(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base);
 
 }  // namespace frana
