@@ -248,6 +248,8 @@ TEST_CASE("Samples can come from a table, with weights", "[ensemble]") {
                                          Contains("found 2 values; expected 1"));
     file.write("rows.csv", "material.bed.mu,weight\n0.1,much\n");
     CHECK_THAT(file.complaint(text), Contains("found the weight \"much\""));
+    file.write("rows.csv", "material.bed.mu,weight,weight\n0.1,1,9\n0.2,9,1\n");  // the last one counted
+    CHECK_THAT(file.complaint(text), Contains("found 2 columns \"weight\"; expected one"));
     CHECK_THAT(file.complaint(text + mu), Contains("ensemble.vary"));
 }
 

@@ -84,6 +84,10 @@ void read_sample_table(const std::filesystem::path& file, EnsemblePlan& plan, Pr
     std::vector<bool> is_key;
     is_key.reserve(names.size());
     for (const std::string& name : names) is_key.push_back(note_key(name, file.string() + ":1", plan, problems));
+    for (const char* once : {"weight", kReturnPeriod})
+        if (const auto found = std::count(names.begin(), names.end(), once); found > 1)
+            problems.add(file.string() + ":1", fmt::format("found {} columns \"{}\"", found, once), "expected one",
+                         "remove the others");
     double sum = 0.0;
     for (int number = 2; std::getline(stream, line); ++number) {
         const std::vector<std::string> fields = quoted_fields(line);
