@@ -153,7 +153,7 @@ FrictionPart::Extent extent_without_zones(const CaseFile& file, const Scene& sce
     for (const FrictionPart& part : scene.friction->parts) {
         const std::string zone = part.name.substr(0, part.name.find(' '));
         const bool is_zone = zone.rfind("material.zone.", 0) == 0;
-        if (is_zone && file.given(zone + "." + in_zone)) continue;
+        if (is_zone && file.given(fmt::format("{}.{}", zone, in_zone))) continue;
         for (const FrictionPart::Extent& extent : part.extents)
             if (extent.key == in_zone)
                 all.low = std::min(all.low, extent.low), all.high = std::max(all.high, extent.high);

@@ -445,7 +445,7 @@ private:
     struct Shared {
         int ground = -1, top = -1;  ///< in the list of touches; top: -1 where there is none
         double of_top = 0.0;        ///< [1]
-        Touch apart[2];
+        Touch apart_ground, apart_top;
     };
     static Vec3 momentum(const SolidBody::Node& node) { return {node.x, node.y, node.z}; }
 
@@ -468,7 +468,7 @@ private:
         if (on.m > 0.0) shared = ground_and_top(body, list, count);
         if (shared.top < 0) return shared;
         Touch &ground = list[shared.ground], &top = list[shared.top];
-        shared.apart[0] = ground, shared.apart[1] = top;
+        shared.apart_ground = ground, shared.apart_top = top;
         ground.least = std::max(ground.least, top.least);
         const auto needed = [&](double mass, const Vec3& has, const Touch& from) {
             return std::max(0.0, mass * ground.least - has.dot(from.contact.normal));
@@ -486,7 +486,7 @@ private:
     [[gnu::noinline]] static void give_each(const Shared& shared, Touch* list, int& count) {
         if (shared.top < 0) return;
         const double s = shared.of_top, given = list[shared.ground].normal_change;
-        Touch ground = shared.apart[0], top = shared.apart[1];
+        Touch ground = shared.apart_ground, top = shared.apart_top;
         const double length = ((1.0 - s) * ground.contact.normal + s * top.contact.normal).norm();
         ground.normal_change = (1.0 - s) * given / length, top.normal_change = s * given / length;
         list[shared.ground] = ground;
