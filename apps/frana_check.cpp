@@ -10,12 +10,12 @@
 #include "compare/expected_width.h"
 #include "compare/flow_width.h"
 #include "compare/runout.h"
+#include "coupling/particle_watch.h"
 #include "frana_check.h"
 #include "frana_commands.h"
 #include "io/gdal_reader.h"
 #include "run/folder/run_insitu.h"
 #include "run/folder/run_page.h"
-#include "run/simulation.h"
 #include "scene/bed_over.h"
 #include "scene/flow_start.h"
 #include "scene/inflow_facts.h"
@@ -329,14 +329,10 @@ std::string barriers_text(const Scene& scene) {
     return text;
 }
 
-/// What stands or comes in on top of barriers, as a run's report says of particles. What else a simulation remarks is of
-/// its end.
+/// What stands or comes in on top of barriers, as a run's report says of particles.
 std::vector<std::string> remarks_on_placed(const Scene& scene) {
     if (scene.barriers.empty() || scene.structure || scene.solid || scene.water) return {};
-    std::vector<std::string> placed;
-    for (std::string& remark : make_simulation(scene)->remarks())
-        if (remark.find("on top of barriers") != std::string::npos) placed.push_back(std::move(remark));
-    return placed;
+    return ParticleWatch(scene).remarks();
 }
 
 }  // namespace

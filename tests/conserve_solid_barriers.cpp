@@ -308,6 +308,14 @@ TEST_CASE("A point above a low wall has no mirror particle in the floor below it
     CHECK_FALSE(MirrorParticles(surfaces, 3u, {1.5, 0, 1.25}, 1.0).stands_on_barrier());
 }
 
+TEST_CASE("A point before a wall's face down a slope has its mirror particle in the ground", "[solid][barriers]") {
+    const double slope = std::tan(30.0 / constants::kRadian), steep = std::hypot(1.0, slope);
+    const std::vector<Surface> surfaces{Surface::plane({0, 0, 0}, Vec3(slope, 0, 1) / steep),
+                                        Surface::barrier(Prism(rectangle(-4, -4, 0, 4), 3.0))};
+    const Vec3 before(0.2, 0, -0.2 * slope + steep);  // a cell from the ground, whose foot is up the slope
+    CHECK_FALSE(MirrorParticles(surfaces, 3u, before, 1.0).stands_on_barrier());
+}
+
 TEST_CASE("What a barrier gives a spinning block is in its ledger: momentum and moment", "[solid][barriers]") {
     SolidScene s;
     s.gravity.setZero();

@@ -307,5 +307,9 @@ TEST_CASE("Elevations are no surveyed footprint", "[survey]") {
     spec.value = [](int column, int row) { return column < 30 ? 0.1 * row : 0.0; };  // depths
     make_raster(files / "depth.tif", spec);
     read(files / "depth.tif", wkt_of("EPSG:32632"), log);
+    spec.nodata = -9999.0;  // as a run writes its pressures: nothing where the flow never came
+    spec.value = [](int column, int row) { return column < 30 ? 1000.0 * (row + 1) : -9999.0; };
+    make_raster(files / "pressure.tif", spec);
+    read(files / "pressure.tif", wkt_of("EPSG:32632"), log);
     CHECK_FALSE(any_contains(log, "elevations"));
 }

@@ -98,6 +98,11 @@ TEST_CASE("Single nodes around a wide flow do not count", "[width]") {
 TEST_CASE("A flow of single nodes is a cell wide; where nothing flowed there is no width", "[width]") {
     const Raster line = flow_of([](double x, double y) { return std::abs(y) < 0.5 * cell && std::abs(x) < 300.0; });
     CHECK(flow_width(line, 0.1) == Approx(cell));  // sections are sums of steps
+    for (const double cells : {0.5, 1.5}) {        // one node; a square of four
+        const double size = cells * cell;
+        const Raster few = flow_of([=](double x, double y) { return std::abs(x) < size && std::abs(y) < size; });
+        CHECK(flow_width(few, 0.1) == Approx(2.0 * size).margin(cell).epsilon(0.0));
+    }
     CHECK(std::isnan(flow_width(line, 2.0)));
     Raster unknown = line;
     for (double& h : unknown.values) h = Raster::nodata;

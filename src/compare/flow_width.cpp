@@ -76,7 +76,7 @@ private:
                     seen[static_cast<std::size_t>(node)] = 1;
                     hole.push_back(static_cast<std::size_t>(node));
                 }
-            if (hole.size() <= small)
+            if (start != 0 && hole.size() <= small)  // the first is what is outside
                 for (const std::size_t node : hole) covered_[node] = 1;
         }
     }
@@ -191,6 +191,7 @@ double flow_width(const Raster& depth, double limit) {
     const Footprint footprint(depth, limit);
     if (footprint.empty()) return Raster::nodata;
     std::vector<double> widths = footprint.widths();
+    if (widths.empty()) return depth.geometry.cell;
     const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
     std::nth_element(widths.begin(), middle, widths.end());
     return *middle * depth.geometry.cell;

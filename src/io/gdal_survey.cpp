@@ -85,7 +85,7 @@ void require_vector_crs(const LayerName& name, const OGRSpatialReference& terrai
 }
 
 /// A mask has one number or two, and a footprint leaves something out. Elevations are many numbers, and large or
-/// everywhere.
+/// everywhere. What has nodata leaves something out.
 void refuse_elevations(const std::vector<double>& values, const fs::path& file, std::vector<std::string>& log) {
     constexpr double kLarge = 100.0;  // [m]; no flow is as deep over half of its extent
     constexpr std::size_t kOfMask = 2;
@@ -96,7 +96,7 @@ void refuse_elevations(const std::vector<double>& values, const fs::path& file, 
         ++known, above += value > 0.0, large += value > kLarge;
         if (numbers.size() <= kOfMask) numbers.insert(value);
     }
-    if (numbers.size() <= kOfMask) return;
+    if (numbers.size() <= kOfMask || known < static_cast<Index>(values.size())) return;
     const double highest = *std::max_element(values.begin(), values.end(), [](double a, double b) {
         return std::isnan(b) ? false : std::isnan(a) || a < b;
     });

@@ -53,7 +53,7 @@ std::vector<double> depths_at(const OfTable& table, const GridGeometry& points) 
 
 /// Points over what two boxes have in common, some to a cell; without any where that is nothing.
 GridGeometry points_over(const OfTable& a, const OfTable& b, double cell) {
-    constexpr double kPerCell = 4.0, kMost = 2000.0;  // along a side
+    constexpr double kPerCell = 4.0, kMost = 500.0;  // along a side
     const Vec2 low = a.low.cwiseMax(b.low), size = a.high.cwiseMin(b.high) - low;
     if (!(size.minCoeff() > 0.0)) return {};
     const double step = std::max(cell / kPerCell, size.maxCoeff() / kMost);
@@ -72,11 +72,15 @@ void remark_on_overlaps(const CaseFile& file, const std::vector<Release>& all,
         table.summary = &summaries[i];
         take(all[i], terrain, table);
     }
+    constexpr int kMostPairs = 200;  // with boxes in common: more would take minutes
+    int pairs = 0;
     for (auto b = tables.begin(); b != tables.end(); ++b)
         for (auto a = tables.begin(); a != b; ++a) {
             const ReleaseSummary &one = *a->second.summary, &other = *b->second.summary;
             if (one.at != other.at || one.when_hit != other.when_hit) continue;  // one flows onto where the other was
             const GridGeometry points = points_over(a->second, b->second, terrain.cell);
+            if (points.size() == 0) continue;
+            if (++pairs > kMostPairs) return;
             const std::vector<double> ones = depths_at(a->second, points), others = depths_at(b->second, points);
             const double pixel = points.cell * points.cell;
             double area = 0.0, volume = 0.0;

@@ -445,7 +445,7 @@ private:
     struct Shared {
         int ground = -1, top = -1;  ///< in the list of touches; top: -1 where there is none
         double of_top = 0.0;        ///< [1]
-        Touch apart_ground, apart_top;
+        Touch apart_ground{}, apart_top{};
     };
     static Vec3 momentum(const SolidBody::Node& node) { return {node.x, node.y, node.z}; }
 
@@ -467,6 +467,7 @@ private:
         Shared shared;
         if (on.m > 0.0) shared = ground_and_top(body, list, count);
         if (shared.top < 0) return shared;
+        expect(shared.ground < shared.top, "floors come before barriers");
         Touch &ground = list[shared.ground], &top = list[shared.top];
         shared.apart_ground = ground, shared.apart_top = top;
         ground.least = std::max(ground.least, top.least);

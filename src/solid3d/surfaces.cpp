@@ -113,7 +113,8 @@ bool is_covered(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec
     for (; near != 0; near &= near - 1) {
         const Surface& barrier = surfaces[static_cast<std::size_t>(__builtin_ctz(near))];
         Entry entry;
-        if (barrier.is_barrier() && enters(barrier, x, foot, entry)) return true;
+        // By its top: on a slope the way to the ground may enter the wall's side that is up the slope.
+        if (barrier.is_barrier() && enters(barrier, x, foot, entry) && is_floor(entry.normal)) return true;
     }
     return false;
 }
