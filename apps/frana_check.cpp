@@ -10,12 +10,12 @@
 #include "compare/expected_width.h"
 #include "compare/flow_width.h"
 #include "compare/runout.h"
-#include "coupling/particle_watch.h"
 #include "frana_check.h"
 #include "frana_commands.h"
 #include "io/gdal_reader.h"
 #include "run/folder/run_insitu.h"
 #include "run/folder/run_page.h"
+#include "run/simulation.h"
 #include "scene/bed_over.h"
 #include "scene/flow_start.h"
 #include "scene/inflow_facts.h"
@@ -329,12 +329,6 @@ std::string barriers_text(const Scene& scene) {
     return text;
 }
 
-/// What stands or comes in on top of barriers, as a run's report says of particles.
-std::vector<std::string> remarks_on_placed(const Scene& scene) {
-    if (scene.barriers.empty() || scene.structure || scene.solid || scene.water) return {};
-    return ParticleWatch(scene).remarks();
-}
-
 }  // namespace
 
 std::string told_of(const BuiltScene& built) {
@@ -352,7 +346,7 @@ std::string told_of(const BuiltScene& built) {
     for (const Insitu& entry : built.scene.insitu)
         text += fmt::format("in situ     {} \"{}\"\n", kind_word(entry.kind), entry.name);
     for (const std::string& remark : built.scene.log) text += "remark      " + remark + '\n';
-    for (const std::string& remark : remarks_on_placed(built.scene)) text += "remark      " + remark + '\n';
+    for (const std::string& remark : remarks_on_barriers(built.scene)) text += "remark      " + remark + '\n';
     return text + "ready to run\n";
 }
 

@@ -1,4 +1,5 @@
 #include "coupling/growing_particles.h"
+#include "coupling/particle_watch.h"
 #include "coupling/staged_run.h"
 #include "coupling/structured_run.h"
 #include "coupling/walled_particles.h"
@@ -11,6 +12,11 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene, Start start) {
     if (!scene.barriers.empty()) return std::make_unique<WalledParticles>(scene, start);
     if (scene.wider) return std::make_unique<GrowingParticles>(scene, start);
     return std::make_unique<DepthAveraged>(scene, start);
+}
+
+std::vector<std::string> remarks_on_barriers(const Scene& scene) {
+    if (scene.barriers.empty() || scene.structure || scene.solid || scene.water) return {};
+    return ParticleWatch(scene).remarks();
 }
 
 }  // namespace frana

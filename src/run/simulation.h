@@ -65,5 +65,7 @@ enum class Start { placed, resumed };
 
 /// Chooses physics and scheme once, as types, and builds the solver of a scene.
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, Start start = Start::placed);
+/// What stands or comes in on top of barriers, as the simulation of particles remarks at its end.
+std::vector<std::string> remarks_on_barriers(const Scene& scene);
 
 }  // namespace frana
