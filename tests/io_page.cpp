@@ -48,6 +48,11 @@ public:
                         depth, formats));
         return call_frana(path(), "run case.toml --out run --overwrite --quiet");
     }
+    /// Runs a case that is given in full into "run".
+    Outcome run_case(const std::string& text) const {
+        write_text(path() / "other.toml", text);
+        return call_frana(path(), "run other.toml --out run --quiet");
+    }
     const fs::path& path() const { return folder_.path(); }
     fs::path run_dir() const { return path() / "run"; }
 
@@ -253,13 +258,11 @@ TEST_CASE("The page of a flood tells what came in, where its front is measured f
           "[page]") {
     if (cannot_show()) return;
     const Slope slope;
-    write_text(
-        slope.path() / "flood.toml",
+    const Outcome done = slope.run_case(
         "[case]\ntitle = \"Flood\"\n[terrain]\ndem = \"dem.asc\"\n[[inflow]]\nname = \"torrent\"\nline = [[1050, "
         "2035], [1050, 2065]]\nvolume = 400\npeak = 80\nvelocity = 4\n[material]\ndensity = "
         "1600\n[material.bed]\nlaw = \"coulomb\"\nmu = 0.7\n[deposition]\nlaw = \"rest\"\ntime = 1\n[time]\nend = "
         "20\n[output]\nformats = [\"vtk\", \"web\"]\n");
-    const Outcome done = call_frana(slope.path(), "run flood.toml --out run --quiet");
     INFO(done.err);
     REQUIRE(done.code == 0);
     const Json record = Json::parse(text_of(slope.run_dir() / "run.json")), &budgets = record.at("budgets");
@@ -285,14 +288,13 @@ TEST_CASE("The page of a flood tells what came in, where its front is measured f
 TEST_CASE("The page of water has its volumes, drawn again too", "[page]") {
     if (cannot_show()) return;
     const Slope slope;
-    write_text(slope.path() / "water.toml",
-               "[case]\ntitle = \"Flood\"\n[terrain]\ndem = \"dem.asc\"\nwindow = [1005, 2000, 1150, "
-               "2100]\n[[inflow]]\nname = \"torrent\"\nline = [[1050, "
-               "2035], [1050, 2065]]\nvolume = 400\npeak = 80\n[water]\nmodel = "
-               "\"free\"\nfriction = \"manning\"\nmanning_n = 0.05\ndensity = 1100\n[time]\nend = 5\n[output]\nformats "
-               "= [\"vtk\", "
-               "\"web\"]\n");
-    const Outcome done = call_frana(slope.path(), "run water.toml --out run --quiet");
+    const Outcome done = slope.run_case(
+        "[case]\ntitle = \"Flood\"\n[terrain]\ndem = \"dem.asc\"\nwindow = [1005, 2000, 1150, "
+        "2100]\n[[inflow]]\nname = \"torrent\"\nline = [[1050, "
+        "2035], [1050, 2065]]\nvolume = 400\npeak = 80\n[water]\nmodel = "
+        "\"free\"\nfriction = \"manning\"\nmanning_n = 0.05\ndensity = 1100\n[time]\nend = 5\n[output]\nformats "
+        "= [\"vtk\", "
+        "\"web\"]\n");
     INFO(done.err);
     REQUIRE(done.code == 0);
     const Json record = Json::parse(text_of(slope.run_dir() / "run.json"));

@@ -89,8 +89,7 @@ void remark_on_overlaps(const CaseFile& file, const std::vector<Release>& all,
             if (area < terrain.cell * terrain.cell) continue;  // edges that were meant to touch
             scene.log.push_back(fmt::format(
                 "{}: found about {:.3g} m2 of it on release.{}; expected releases side by side, since their depths add "
-                "up "
-                "there, to about {:.3g} m3 more than by the deeper one; if that is not meant, cut one of them",
+                "up there, to about {:.3g} m3 more than by the deeper one; if that is not meant, cut one of them",
                 file.table_place(fmt::format("release.{}", b->first)), area, a->first, volume));
         }
 }

@@ -13,10 +13,10 @@ public:
     /// `centre` of the release [m], from which the front is measured; `path`: slopes that velocities follow, on the grid.
     StructuredMap(const TileGrid& grid, const Vec2& centre, double footprint_depth, LazyArray<Pair> path);
 
+    enum class Peaks { grow, stay };
     /// Takes what the nodes are now into the extent, and with `Peaks::grow` into the peaks. The run does not come by
     /// states aside, so their peaks would be gone in the next frame. Visits tiles near material only. Same bits for any
     /// number of threads.
-    enum class Peaks { grow, stay };
     void note(const StructuredBody& body, const WaterFlow* water, double time, Peaks peaks);
     const FlowExtent& extent() const { return extent_; }
     /// Nodes that are covered since a time at most, and where material is faster than `speed` (MovingMass::fronts).
