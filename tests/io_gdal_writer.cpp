@@ -1,6 +1,7 @@
 // Products that a GIS opens: read back with GDAL itself and with our reader.
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "base/error.h"
@@ -215,6 +216,21 @@ TEST_CASE("The footprint reads back as the polygons it was, with and without a C
                 CHECK(std::abs(column - std::round(column)) < 1e-9);  // nine decimals of metres are written
             }
     }
+}
+
+TEST_CASE("Levels of a probability are outlines in one file, and a value at a level belongs to it", "[gdal]") {
+    const FreshFolder folder;
+    const auto file = folder.path() / "probability.geojson";
+    Raster share = covered({"....", ".##.", ".##."});
+    for (double& value : share.values) value = value > 0.0 ? 0.05 : 0.0;
+    share.at(1, 0) = 0.5;
+    share.at(2, 0) = 0.1 + 0.2 + 0.2;  // 0.5 but for round-off
+    write_levels(file, share, "probability", {0.05, 0.5, 0.95});
+    using Json = nlohmann::json;
+    const Json features = Json::parse(text_of(file))["features"];
+    REQUIRE(features.size() == 2);
+    CHECK(features[0]["properties"] == Json{{"area_m2", 100.0}, {"probability", 0.05}});
+    CHECK(features[1]["properties"] == Json{{"area_m2", 50.0}, {"probability", 0.5}});
 }
 
 TEST_CASE("Nothing covered gives an empty collection, and a threshold of NaN is refused", "[gdal]") {

@@ -129,33 +129,66 @@ std::vector<std::unique_ptr<OGRPolygon>> patches(const Raster& depth, double thr
     return gdal::outlines_of(mask, g.nx, g.ny, {extent[0], g.cell, 0.0, extent[1], 0.0, g.cell});
 }
 
-void write_features(GDALDataset& dataset, const std::vector<std::unique_ptr<OGRPolygon>>& outlines,
-                    const std::string& name, const Raster& depth, const std::map<std::string, double>& attributes) {
-    const gdal::Transformation transformation = to_degrees(depth.crs_wkt);
-    OGRSpatialReference crs = transformation ? wgs84() : coded_crs(depth.crs_wkt);
-    const double pixel_area = depth.geometry.cell * depth.geometry.cell;
+using Attributes = std::map<std::string, double>;
+
+/// Outlines of a raster's pixels deeper than `threshold`, and what each of them has besides its area.
+struct OutlinesOf {
+    double threshold;
+    Attributes attributes;  ///< the same names at each threshold
+};
+
+OGRLayer* outline_layer(GDALDataset& dataset, const std::string& name, OGRSpatialReference crs, bool degrees,
+                        const Attributes& attributes) {
     // 1e-9 m, of the order of a map coordinate's round-off: shared edges stay shared, numbers stay short. 1e-12 degrees
     // are 1e-7 m.
-    const char* const options[] = {"RFC7946=NO", transformation ? "COORDINATE_PRECISION=12" : "COORDINATE_PRECISION=9",
+    const char* const options[] = {"RFC7946=NO", degrees ? "COORDINATE_PRECISION=12" : "COORDINATE_PRECISION=9",
                                    "SIGNIFICANT_FIGURES=15", nullptr};
     OGRLayer* layer =
         dataset.CreateLayer(name.c_str(), crs.IsEmpty() ? nullptr : &crs, wkbPolygon, const_cast<char**>(options));
-    if (!layer) return;  // the caller sees GDAL's complaint
+    if (!layer) return nullptr;
     OGRFieldDefn area("area_m2", OFTReal);
     layer->CreateField(&area);
     for (const auto& [key, value] : attributes) {
         OGRFieldDefn field(key.c_str(), OFTReal);
         layer->CreateField(&field);
     }
-    for (const auto& outline : outlines) {
-        const OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
-        // Whole pixels: free of the cancellation of large map coordinates.
-        feature->SetField("area_m2", std::round(outline->get_Area() / pixel_area) * pixel_area);
-        for (const auto& [key, value] : attributes) feature->SetField(key.c_str(), value);
-        if (transformation && outline->transform(transformation.get()) != OGRERR_NONE) return;
-        feature->SetGeometry(outline.get());
-        if (layer->CreateFeature(feature.get()) != OGRERR_NONE) return;
-    }
+    return layer;
+}
+
+/// Where GDAL complains it stops: the caller sees that.
+void write_features(GDALDataset& dataset, const std::string& name, const Raster& depth,
+                    const std::vector<OutlinesOf>& levels) {
+    const gdal::Transformation transformation = to_degrees(depth.crs_wkt);
+    const OGRSpatialReference crs = transformation ? wgs84() : coded_crs(depth.crs_wkt);
+    const double pixel_area = depth.geometry.cell * depth.geometry.cell;
+    OGRLayer* layer = outline_layer(dataset, name, crs, transformation != nullptr, levels.front().attributes);
+    if (!layer) return;
+    for (const OutlinesOf& level : levels)
+        for (const auto& outline : patches(depth, level.threshold)) {
+            const OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
+            // Whole pixels: free of the cancellation of large map coordinates.
+            feature->SetField("area_m2", std::round(outline->get_Area() / pixel_area) * pixel_area);
+            for (const auto& [key, value] : level.attributes) feature->SetField(key.c_str(), value);
+            if (transformation && outline->transform(transformation.get()) != OGRERR_NONE) return;
+            feature->SetGeometry(outline.get());
+            if (layer->CreateFeature(feature.get()) != OGRERR_NONE) return;
+        }
+}
+
+void write_outlines(const std::filesystem::path& target, const Raster& depth, const std::vector<OutlinesOf>& levels) {
+    for (const OutlinesOf& level : levels)
+        for (const auto& [key, value] : level.attributes)
+            if (!std::isfinite(value))
+                throw NumericsError(
+                    fmt::format("{}: the attribute {} is {}, no finite number", target.string(), key, value));
+    AtomicFile file(target);
+    const gdal::Messages messages;
+    gdal::Dataset dataset(driver("GeoJSON").Create(file.path().c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    if (!dataset) refuse_write(target, messages);
+    write_features(*dataset, target.stem().string(), depth, levels);
+    dataset.reset();
+    if (messages.failed()) refuse_write(target, messages);
+    file.commit();
 }
 
 /// The file next to a raster that cannot hold the names of its classes itself, in GDAL's form.
@@ -238,21 +271,18 @@ FootprintPlace footprint_place(const std::string& crs_wkt) {
 
 void write_footprint(const std::filesystem::path& target, const Raster& covered_depth, double threshold,
                      const std::map<std::string, double>& attributes) {
-    std::map<std::string, double> fields = attributes;
+    Attributes fields = attributes;
     fields["threshold_m"] = threshold;
-    for (const auto& [key, value] : fields)
-        if (!std::isfinite(value))
-            throw NumericsError(
-                fmt::format("{}: the attribute {} is {}, no finite number", target.string(), key, value));
-    const auto outlines = patches(covered_depth, threshold);
-    AtomicFile file(target);
-    const gdal::Messages messages;
-    gdal::Dataset dataset(driver("GeoJSON").Create(file.path().c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-    if (!dataset) refuse_write(target, messages);
-    write_features(*dataset, outlines, target.stem().string(), covered_depth, fields);
-    dataset.reset();
-    if (messages.failed()) refuse_write(target, messages);
-    file.commit();
+    write_outlines(target, covered_depth, {{threshold, fields}});
+}
+
+void write_levels(const std::filesystem::path& target, const Raster& field, const std::string& name,
+                  const std::vector<double>& levels) {
+    expect(!levels.empty(), "levels of which outlines are drawn");
+    constexpr double kBelow = 1.0 - 1e-9;  // a value that is the level but for round-off belongs to it
+    std::vector<OutlinesOf> all;
+    for (const double level : levels) all.push_back({level * kBelow, {{name, level}}});
+    write_outlines(target, field, all);
 }
 
 }  // namespace frana

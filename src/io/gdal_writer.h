@@ -44,6 +44,11 @@ void write_class_geotiff(const std::filesystem::path& target, const GridGeometry
 void write_footprint(const std::filesystem::path& target, const Raster& covered_depth, double threshold,
                      const std::map<std::string, double>& attributes = {});
 
+/// Such a file of the pixels with at least each of `levels` of a field, level by level. Attributes: area_m2, and `name`
+/// with the level, all > 0. Throws as write_geotiff.
+void write_levels(const std::filesystem::path& target, const Raster& field, const std::string& name,
+                  const std::vector<double>& levels);
+
 /// How such a file places its outlines: in a CRS that it names, in degrees, or in unnamed coordinates of the map. A GIS
 /// takes those for degrees. They are left where there is no CRS, or none that PROJ can bring to degrees.
 enum class FootprintPlace { named, degrees, unnamed };

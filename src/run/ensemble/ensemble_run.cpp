@@ -21,10 +21,11 @@ namespace {
 /// Where the file of an ensemble is, for shards that join its runs later.
 constexpr const char* kOrigin = "ensemble.path";
 
-/// What an ensemble makes besides its shards and outlines: files, and folders of files. Its record comes first.
+/// What an ensemble makes besides its shards: files, and folders of files. Its record comes first.
 const std::vector<std::string>& names_made() {
-    static const std::vector<std::string> names = {"ensemble.json", "samples.csv", "runs.csv", "report.md", "maps.vti",
-                                                   "terrain.vti",   "rasters",     "figures",  "states"};
+    static const std::vector<std::string> names = {
+        "ensemble.json",       "samples.csv", "runs.csv", "report.md", "maps.vti",
+        "probability.geojson", "terrain.vti", "rasters",  "figures",   "states"};
     return names;
 }
 
@@ -44,11 +45,6 @@ void require_room_for_ensemble(const fs::path& dir) {
 void remove_ensemble(const fs::path& dir) {
     for (const std::string& made : names_made()) fs::remove_all(dir / made);
     fs::remove_all(dir / "shards");
-    std::vector<fs::path> outlines;
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator(dir, none))
-        if (entry.path().filename().string().rfind("reached_by_", 0) == 0) outlines.push_back(entry.path());
-    for (const fs::path& file : outlines) fs::remove(file);
     fs::remove(dir / kOrigin);  // last: without it what is left would be taken for others'
 }
 

@@ -100,7 +100,7 @@ private:
         probabilities_.push_back({"probability_reached", "1", reached_.values});
         draw_map(reached_, "probability_reached",
                  fmt::format("probability of a depth above {:g} m", base_.footprint_depth));
-        for (const double p : {0.05, 0.5, 0.95}) write_contour(reached_, p);
+        write_outlines();
     }
 
     void write_arrival(const PeakField& field, const PixelValues& pixels) {
@@ -129,12 +129,12 @@ private:
         }
     }
 
-    void write_contour(Raster reached, double p) {
-        const std::string name = fmt::format("reached_by_{:g}.geojson", p);
+    void write_outlines() {
+        constexpr const char* kName = "probability.geojson";
+        Raster reached = reached_;
         reached.crs_wkt = base_.bed.crs_wkt;
-        // A share equal to the level belongs to it.
-        write_footprint(dir_ / name, reached, p * (1.0 - 1e-9), {{"probability", p}});
-        summary_.files.push_back(name);
+        write_levels(dir_ / kName, reached, "probability", {0.05, 0.5, 0.95});
+        summary_.files.push_back(kName);
     }
 
     void write_exceedance(const PeakField& field, double threshold, const PixelValues& pixels) {
