@@ -24,6 +24,7 @@ public:
         return *this;
     }
     const std::map<std::string, Entry>& entries() const { return entries_; }
+    std::map<std::string, Entry>& entries() { return entries_; }
 
 protected:
     std::size_t stored(const std::string& name, Kind kind) override {

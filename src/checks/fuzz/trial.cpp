@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "base/error.h"
@@ -85,14 +86,28 @@ double disturbance(const Scene& scene, const Facts& facts) {
     return std::min(kDisturbed * round_off, 1e-7);
 }
 
-/// Asymmetry at `step` of a twin whose points' masses are disturbed, each its own way.
-double disturbed_asymmetry(const Scene& scene, const Facts& facts, const Scale& scale, Index step) {
-    Scene twin = scene;
+/// Disturbs all numbers of the points of a saved state, each its own way.
+void disturb(MemoryArchive& state, double share) {
     Dice dice(1);
-    const double share = disturbance(scene, facts);
-    for (double& volume : twin.particles.volume) volume *= 1.0 + share * dice.between(-1.0, 1.0);
-    DepthAveraged simulation(twin);
-    while (simulation.status().step < step) simulation.advance(kNever);
+    for (auto& [name, entry] : state.entries()) {
+        if (name.find("points/") == std::string::npos || entry.kind != Archive::Kind::real) continue;
+        for (std::size_t at = 0; at < entry.bytes.size(); at += sizeof(double)) {
+            double value = 0.0;
+            std::memcpy(&value, &entry.bytes[at], sizeof value);
+            value *= 1.0 + share * dice.between(-1.0, 1.0);
+            std::memcpy(&entry.bytes[at], &value, sizeof value);
+        }
+    }
+}
+
+/// Asymmetry at `step` of a twin that is disturbed at the start.
+double disturbed_asymmetry(const Scene& scene, const Facts& facts, const Scale& scale, Index step) {
+    MemoryArchive state;
+    DepthAveraged(scene).serialize(state);
+    disturb(state, disturbance(scene, facts));
+    DepthAveraged simulation(scene, Start::resumed);
+    simulation.serialize(state.rewind());
+    go_on(simulation, step);
     return asymmetry(facts, snapshot_of(simulation, facts.steep).nodes, scale);
 }
 

@@ -24,8 +24,8 @@ constexpr Index kMostPoints = 60000;
 using Falsify = std::function<void(Snapshot&)>;
 
 /// Whether a difference between mirror images is round-off that the flow itself made grow, as streams that meet do. Then it
-/// is in proportion to what disturbed the images at first. In a twin the points' masses are off by `kDisturbed` times
-/// the round-off of depths, each its own way. (That is the elevation's round-off over the depth.) The twin's difference
+/// is in proportion to what disturbed the images at first. In a twin all numbers of the points are off by `kDisturbed`
+/// times the round-off of depths, each its own way. (That is the elevation's round-off over the depth.) The twin's difference
 /// at that step is more than 1 / `kShare` times as large. The rest is for the round-off of all steps since. What the
 /// code itself does to one of the images is as large in the twin. So is a choice that round-off tips.
 bool has_grown(const Scene& scene, const Facts& facts, const Scale& scale, const Violation& difference);
