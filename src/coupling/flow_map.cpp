@@ -107,7 +107,7 @@ bool FlowMap::on_pixels(const Vec3& place) const {
 }
 
 /// One thread: it takes a hundredth of the steps between two samples.
-void FlowMap::sample(const Mpm3d& flow, double time) {
+void FlowMap::sample(const Mpm3d& flow, double time, Peaks peaks) {
     std::fill(nodes_.begin(), nodes_.end(), Node{});
     std::fill(heights_.begin(), heights_.end(), 0.0);
     for (Index p = 0; p < flow.body().points.count(); ++p) {
@@ -125,7 +125,7 @@ void FlowMap::sample(const Mpm3d& flow, double time) {
             highest = std::max(highest, height);
         });
     }
-    note_peaks(time);
+    note_nodes(time, peaks);
 }
 
 /// Infinite where the bed is not known.
@@ -136,7 +136,7 @@ double FlowMap::height_above_bed(const Vec3& place) const {
     return std::isnan(bed) ? INFINITY : place[2] - bed;
 }
 
-void FlowMap::note_peaks(double time) {
+void FlowMap::note_nodes(double time, Peaks peaks) {
     extent_ = {};
     for (Index k = 0; k < static_cast<Index>(nodes_.size()); ++k) {
         if (!(depth(k) > 0.0)) continue;
@@ -144,7 +144,7 @@ void FlowMap::note_peaks(double time) {
         const auto at = static_cast<std::size_t>(k);
         const double h = depth(k) + (adjacent_.empty() ? 0.0 : adjacent_[at].mass / (density_ * areas_[at]));
         const NodeState now{h, velocity(k).norm(), density_ * gravity_ * h / steepening_[at], density_};
-        peaks_[static_cast<std::size_t>(k)].note(now, time, footprint_depth_);
+        if (peaks == Peaks::grow) peaks_[at].note(now, time, footprint_depth_);
         extent_.note(now, footprint_depth_, areas_[static_cast<std::size_t>(k)], (place_of(k) - centre_).norm());
     }
 }

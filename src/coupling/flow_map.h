@@ -27,8 +27,10 @@ public:
     };
 
     explicit FlowMap(const Scene& scene);
-    /// Takes the points as they are now, and the peaks. Same bits for any number of threads.
-    void sample(const Mpm3d& flow, double time);
+    enum class Peaks { grow, stay };
+    /// Takes the points as they are now, and with `Peaks::grow` the peaks. The run does not come by states that are put
+    /// aside, and their peaks stay. Same bits for any number of threads.
+    void sample(const Mpm3d& flow, double time, Peaks peaks = Peaks::grow);
 
     const NodeBox& nodes() const { return box_; }
     /// The number of a node of the terrain; -1 where the map has none.
@@ -84,7 +86,7 @@ public:
     void serialize(Archive& archive);
 
 private:
-    void note_peaks(double time);
+    void note_nodes(double time, Peaks peaks);
     void note_piled(Index k, double time);
     bool on_pixels(const Vec3& place) const;
     double height_above_bed(const Vec3& place) const;

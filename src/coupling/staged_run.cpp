@@ -43,6 +43,16 @@ StagedRun::StagedRun(const Scene& scene, Start start)
         begin_3d([&](const Marks& marks) { return particles_of(scene.particles, scene, marks); });
 }
 
+/// A step aside must not begin or end the stage: a rounding error less than what is left.
+double StagedRun::longest_step() const {
+    const auto just_before = [&](double time) { return std::nextafter(time - status_.time, 0.0); };
+    if (!points_) return std::min(particles_->longest_step(), just_before(scene_.solid->from));
+    if (ended_) return particles_->longest_step();
+    if (!points_alone()) return 0.0;
+    const double longest = points_->longest_step();
+    return scene_.solid->until ? std::min(longest, just_before(*scene_.solid->until)) : longest;
+}
+
 /// One step of the model in charge: particles until their stage ends; then points; then, perhaps, particles.
 void StagedRun::advance(double until) {
     if (!points_) {
@@ -92,11 +102,13 @@ void StagedRun::sample_particles() {
     if (watch_) watch_->add(before, particles_watch_->loads());
 }
 
+bool StagedRun::points_alone() const { return particles_->status().particles == 0 && pending_.empty(); }
+
 /// Particles that are left go a step ahead of the points. So what flows into the window is there when the points arrive
 /// at that time.
 void StagedRun::step_points(double until) {
     if (particles_->status().time <= points_->status().time) step_particles(until);
-    const bool alone = particles_->status().particles == 0 && pending_.empty();
+    const bool alone = points_alone();
     points_->advance(alone ? until : std::min(until, particles_->status().time));
     note_departed();
     if (alone || points_->status().time == particles_->status().time) {
@@ -242,8 +254,8 @@ void StagedRun::sample(double until) {
     if (points_->status().time >= until) find_pieces();
     spray_.sample(*points_);
     timed_("map", [&] {
-        map_.sample(*points_, points_->status().time);
-        if (watch_) watch_->sample(*points_);
+        map_.sample(*points_, points_->status().time, aside_ ? FlowMap::Peaks::stay : FlowMap::Peaks::grow);
+        if (watch_ && !aside_) watch_->sample(*points_);
     });
     moved_ = 0.0;
 }
@@ -523,6 +535,7 @@ std::vector<PhaseTime> StagedRun::timings() const {
 }
 
 void StagedRun::serialize(Archive& archive) {
+    aside_ = archive.aside() && !archive.loading();
     Index in_3d = ended_ ? 2 : points_ ? 1 : 0;
     archive.number("in_space", in_3d);
     archive.numbers("start",
@@ -530,7 +543,7 @@ void StagedRun::serialize(Archive& archive) {
     Index stuck = start_.stuck;
     archive.number("stuck", stuck);
     start_.stuck = stuck != 0;
-    if (archive.loading() && in_3d) {
+    if (archive.loading() && in_3d && !archive.aside()) {
         ended_ = in_3d == 2;
         points_ = std::make_unique<Mpm3d>(space_of_stage());
         points_->note_departed();
@@ -547,8 +560,10 @@ void StagedRun::serialize(Archive& archive) {
         "sums", {&converted_.mass, &converted_.energy, &converted_.lost, &converted_.mass_later,
                  &converted_.momentum[0], &converted_.momentum[1], &returned_.mass, &returned_.lost, &returned_.raised,
                  &moved_, &largest_mach_, &became_points_, &their_depth_, &finest_needed_});
-    archive.number("pieces", apart_.pieces);
-    archive.numbers("apart", {&apart_.apart, &apart_.alone, &apart_.most_apart, &apart_.most_apart_time});
+    if (!archive.aside()) {  // what is in pieces is found at outputs
+        archive.number("pieces", apart_.pieces);
+        archive.numbers("apart", {&apart_.apart, &apart_.alone, &apart_.most_apart, &apart_.most_apart_time});
+    }
     spray_.serialize(archive);
     timed_.serialize(archive);
     serialize_returning(archive);

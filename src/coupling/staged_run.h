@@ -29,12 +29,8 @@ public:
 
     void advance(double until) override;
     const Status& status() const override { return status_; }
-    /// Known before the points' stage only: later steps end where particles and points meet, and at output times.
-    double longest_step() const override {
-        // A step aside must not begin the stage: a rounding error less than what is left.
-        return points_ ? 0.0
-                       : std::min(particles_->longest_step(), std::nextafter(scene_.solid->from - status_.time, 0.0));
-    }
+    /// Known while one model is alone. Where there are both, steps end where they meet, and at output times.
+    double longest_step() const override;
     MovingMass motion(const MotionQuery& query) const override;
     bool may_rest() const override;
     /// With 3D points: particles first, then points; "model" is 0 and 1. A point's depth, elevation and surface are
@@ -75,6 +71,7 @@ private:
     void begin_3d(const std::function<FlowParticles(const Marks&)>& particles_at);
     SolidScene space_of_stage() const;
     void begin_watch();
+    bool points_alone() const;
     void step_particles(double until);
     void step_points(double until);
     void convert_to_3d();
@@ -143,6 +140,7 @@ private:
     Converted converted_;
     Returned returned_;
     bool ended_ = false;  ///< the 3D stage is over: its points, none, only have its sums
+    bool aside_ = false;  ///< it shows an output between two of its steps, and comes back to the state before
     Status status_;
     /// Of both models in this step, before one was changed: peaks have them already [m], [m/s].
     double deepest_ = 0.0, fastest_ = 0.0;

@@ -239,14 +239,16 @@ void Mpm3d::make_room_for_impulses() {
     });
 }
 
-/// The longest stable step, shortened so that `until` is hit exactly and without a crumb before it.
-double Mpm3d::step_length(double until) const {
+double Mpm3d::longest_step() const {
     const double h = body_.grid.cell(), viscosity = kernel_->explicit_viscosity();
     double longest = cfl_ * h / (sound_speed_ + status_.max_speed);
     constexpr double kViscous = 0.1;  // of rho h^2 / mu: half of what a slice was stable with, for the third direction
     if (viscosity > 0.0) longest = std::min(longest, kViscous * density_ * h * h / viscosity);
-    return status_.step_towards(until, longest);
+    return longest;
 }
+
+/// The longest stable step, shortened so that `until` is hit exactly and without a crumb before it.
+double Mpm3d::step_length(double until) const { return status_.step_towards(until, longest_step()); }
 
 /// One step. Points give mass, momentum and stress to the nodes, and surfaces show their mirror particles. Nodes meet
 /// the surfaces, and points are carried and strained.

@@ -214,6 +214,7 @@ public:
 
     /// One step, never past `until` [s]. Throws NumericsError when a number stops being finite.
     void advance(double until);
+    double longest_step() const;  ///< of the next one, if nothing shortens it [s]
     /// More material, between two steps. Its points get the next numbers.
     void add(const SolidSeeds& seeds);
     /// Material that points feel from now on as they feel each other. Nodes that it reaches have its mass, motion and
