@@ -404,6 +404,28 @@ TEST_CASE("Points that lie apart have the friction of a flow as thick as they ar
     CHECK(coefficient(deep) == Approx(mu + speed * speed / (xi * 2.0)).epsilon(1e-3));
 }
 
+TEST_CASE("Points meet particles by steps of equal length", "[stages]") {
+    const Scene scene = slide();
+    StagedRun run(scene);
+    while (!run.points()) run.advance(scene.end);
+    double before = 0.0;
+    Index meetings = 0, shorter = 0;
+    while (run.status().time < scene.end) {
+        const double meeting = run.particles().status().time;
+        run.advance(scene.end);
+        const double dt = run.points()->status().dt;
+        // The same n steps lead to a meeting, unless the longest step changes by 1 / n.
+        if (run.particles().status().time > meeting)
+            ++meetings;
+        else
+            shorter += dt < 0.99 * before;
+        before = dt;
+    }
+    CAPTURE(meetings, shorter);
+    REQUIRE(meetings > 20);
+    CHECK(shorter < meetings / 4);  // one a meeting was
+}
+
 TEST_CASE("A 3D frame has the mass of both models on its particles and on its nodes", "[stages]") {
     const Scene scene = slide();
     StagedRun run(scene);

@@ -104,12 +104,20 @@ void StagedRun::sample_particles() {
 
 bool StagedRun::points_alone() const { return particles_->status().particles == 0 && pending_.empty(); }
 
+/// The end of the points' next step towards a time that they have to meet. Their steps there are equally long. A force
+/// on a barrier that is a few steps old would jump where the last one is much shorter.
+double StagedRun::next_on_the_way_to(double time) const {
+    constexpr double kShorter = 1.0 + 1e-9;  // than the longest step, or round-off would make two of one
+    const double left = time - points_->status().time, steps = std::ceil(kShorter * left / points_->longest_step());
+    return steps > 1.0 ? points_->status().time + left / steps : time;
+}
+
 /// Particles that are left go a step ahead of the points. So what flows into the window is there when the points arrive
 /// at that time.
 void StagedRun::step_points(double until) {
     if (particles_->status().time <= points_->status().time) step_particles(until);
     const bool alone = points_alone();
-    points_->advance(alone ? until : std::min(until, particles_->status().time));
+    points_->advance(alone ? until : std::min(until, next_on_the_way_to(particles_->status().time)));
     note_departed();
     if (alone || points_->status().time == particles_->status().time) {
         convert_to_3d();

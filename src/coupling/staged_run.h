@@ -72,6 +72,7 @@ private:
     SolidScene space_of_stage() const;
     void begin_watch();
     bool points_alone() const;
+    double next_on_the_way_to(double time) const;
     void step_particles(double until);
     void step_points(double until);
     void convert_to_3d();
