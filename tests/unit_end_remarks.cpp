@@ -56,6 +56,23 @@ TEST_CASE("Energy that motion got by virtual mass is remarked on from a hundredt
     CHECK_THAT(remarks(-42e6).front(), Contains("got 4.2e+07 J") && Contains("42 %"));
 }
 
+TEST_CASE("Work of the ground on 3D points is remarked on from a twentieth on") {
+    const FakeSimulation simulation;
+    RunSummary summary;
+    summary.last.kinetic = 60e6, summary.last.dissipated = 40e6;
+    const auto remarks = [&](double lost) {
+        summary.last.in_3d.walls = lost;
+        std::vector<std::string> about;
+        for (const auto& remark : remarks_at_end(simulation, summary))
+            if (remark.text.find("3D points: got") != std::string::npos) about.push_back(remark.text);
+        return about;
+    };
+    CHECK(remarks(30e6).empty());
+    CHECK(remarks(-4.9e6).empty());
+    REQUIRE(remarks(-20e6).size() == 1);
+    CHECK_THAT(remarks(-20e6).front(), Contains("got 2e+07 J from the ground") && Contains("20 %"));
+}
+
 TEST_CASE("Of very many remarks the first are told, and how many more there are", "[ensemble]") {
     RemarkTally tally;
     for (int k = 0; k < 50; ++k) tally.add(k, {{fmt::format("from {} s: began", k)}});

@@ -164,6 +164,21 @@ FlowParticles in_parts(const FlowParticles& particles, double spacing, double wi
     return parts;
 }
 
+void look_ahead(FlowParticles& particles, const Raster& bed, double reach) {
+    for (std::size_t k = 0; k < particles.count(); ++k) {
+        const Vec2 v(particles.vx[k], particles.vy[k]);
+        if (!(v.squaredNorm() > 0.0)) continue;
+        const Vec2 way = v.normalized();
+        const double here = way.dot(Vec2(particles.slope_x[k], particles.slope_y[k]));
+        double steepest = here;
+        for (const double far : {0.5 * reach, reach}) {
+            const Vec2 x = Vec2(particles.x[k], particles.y[k]) + far * way;
+            steepest = std::max(steepest, way.dot(bed_gradient(bed, x.x(), x.y())));
+        }
+        particles.slope_x[k] += (steepest - here) * way.x(), particles.slope_y[k] += (steepest - here) * way.y();
+    }
+}
+
 MovingParticles particles_of(const std::vector<DepartedPoint>& points, const Scene& scene, const ParticlesAt& at) {
     struct Sum {
         double mass = 0.0;

@@ -32,6 +32,12 @@ FlowParticles particles_of(const Seeds& seeds, const Scene& scene, const std::ve
 FlowParticles in_parts(const FlowParticles& particles, double spacing, double widest, const Raster& bed,
                        const std::array<double, 4>& extent);
 
+/// Where the bed ahead of a particle within `reach` [m] is less steep downhill, or steeper uphill, the slope along its way
+/// becomes that one. So what comes down to a break of slope does not move into the ground behind it.
+void look_ahead(FlowParticles& particles, const Raster& bed, double reach);
+
+constexpr double kAhead = 2.0;  ///< cells of the 3D stage
+
 /// How many parts in_parts() makes, and how many 3D points they become. It is computed before either takes memory.
 struct PartsForecast {
     double particles = 0.0, points = 0.0;

@@ -99,8 +99,9 @@ FlowParticles StagedRun::particles_at_edge(std::vector<Mat2>& gradients) const {
 /// widens sinks, as it does in nature, in proportion to the height above the bed.
 GhostParticles StagedRun::ghosts_of(const FlowParticles& particles, const std::vector<Mat2>& gradients) const {
     const GridGeometry& g = scene_.bed.geometry;
-    const FlowParticles parts =
+    FlowParticles parts =
         in_parts(particles, scene_.solid->spacing, g.cell, scene_.bed, {g.x0, g.y0, g.x_max(), g.y_max()});
+    look_ahead(parts, scene_.bed, kAhead * scene_.solid->cell);
     const std::vector<std::size_t> part_of = parts_of_seeds(parts, *scene_.solid);
     GhostParticles ghosts{seeds_of(parts, *scene_.solid), {}, particles_->status().time, particles_->status().dt};
     for (std::size_t k = 0; k < part_of.size(); ++k) {

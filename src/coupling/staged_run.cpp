@@ -208,6 +208,7 @@ SolidSeeds StagedRun::seeds_of_window(const FlowParticles& particles, const std:
     require_room(particles);
     FlowParticles parts =
         in_parts(particles, scene_.solid->spacing, scene_.bed.geometry.cell, scene_.bed, reach_of(scene_));
+    look_ahead(parts, scene_.bed, kAhead * scene_.solid->cell);
     stand_on_barriers(parts, surfaces);
     require_below_top(parts);
     for (std::size_t k = 0; k < particles.count(); ++k)

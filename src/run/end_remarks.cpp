@@ -42,6 +42,21 @@ void remark_on_virtual_mass(const std::optional<WaterBudget>& water, const RunSu
          gained / stake});
 }
 
+/// Fixed ground does no work on 3D points, and what pushes them into the window next to none.
+void remark_on_work_of_walls(const RunSummary& summary, std::vector<EndRemark>& remarks) {
+    constexpr double kMuch = 0.05;  // sound runs have 3 % at most, such as of ground that is curved within few cells
+    const double stake = energy_at_stake(summary.first, summary.last), gained = -summary.last.in_3d.walls;
+    if (!(stake > 0.0 && gained > kMuch * stake)) return;
+    remarks.push_back(
+        {fmt::format(
+             "3D points: got {:.3g} J from the ground, barriers and the particles around the window, {:.3g} % of what "
+             "friction took and motion had; expected next to nothing: they are too fast, and forces on barriers may be "
+             "too large; move an edge of stage.window that lies at a break of slope by some cells, or give a smaller "
+             "stage.cell",
+             gained, 100.0 * gained / stake),
+         gained / stake});
+}
+
 /// A limit that nothing ever exceeded: footprint, arrival and runout are then of nothing.
 void remark_on_footprint(const Simulation& simulation, const RunSummary& summary, std::vector<EndRemark>& remarks) {
     const Extremes& most = summary.extremes;
@@ -95,6 +110,7 @@ std::vector<EndRemark> remarks_at_end(const Simulation& simulation, const RunSum
     for (std::string& text : simulation.remarks()) remarks.push_back({std::move(text)});
     remark_on_energy(summary, remarks);
     remark_on_virtual_mass(simulation.extras().water, summary, remarks);
+    remark_on_work_of_walls(summary, remarks);
     remark_on_footprint(simulation, summary, remarks);
     return remarks;
 }
