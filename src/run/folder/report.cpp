@@ -378,12 +378,12 @@ std::string barriers(const RunRecord& r) {
     text += mean_forces(r, shown);
     if (hardest > 0.0)
         text += fmt::format(
-            "\nThe first blow of a contact is as hard as the artificial sound is fast ({:.4g} N in the worst step of "
-            "all). Means over less than {:.3g} s, twenty times what sound takes through the flow, may hold some of it. "
+            "\nThe first blow of a contact is as hard as the artificial sound is fast. Means over less than {:.3g} s, "
+            "twenty times what sound takes through the flow, may hold some of it. The worst step of all has {:.4g} N. "
             "Points press on a barrier from a cell of the stage away. What they did before first contact is dated to "
             "it. "
             "Over it: what stood over the barrier at any time.\n",
-            hardest, blur);
+            blur, hardest);
     else if (blur <= 0.0)
         text += fmt::format(
             "\nRun-up is the highest top of what stood within two cells of a barrier, or on it. On a slope a thin flow "
