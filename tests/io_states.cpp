@@ -4,6 +4,8 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,6 +15,7 @@
 #include <regex>
 #include <set>
 
+#include "base/atomic_file.h"
 #include "base/colour.h"
 #include "base/error.h"
 #include "catch.h"
@@ -335,6 +338,51 @@ TEST_CASE("the states of a profile draw depths a round number of times larger, w
     CHECK(2.5 * times * shape.deepest > fifth);  // the next round number would be too large
     CHECK(look["profile"]["title"].get<std::string>().find("depths times") ==
           (times == 1 ? std::string::npos : std::string("Surfaces along the line, ").size()));
+}
+
+namespace {
+
+/// A table with another number in the row of a time.
+void set_value(const fs::path& csv, const std::string& column, double time, double value) {
+    Table table = read_table(csv);
+    const auto at = std::find(table.columns.begin(), table.columns.end(), column) - table.columns.begin();
+    std::string text;
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+        text += (c > 0 ? "," : "") + table.columns[c] + (table.units[c].empty() ? "" : " [" + table.units[c] + "]");
+    text += '\n';
+    const std::vector<double> t = table.column("t");
+    bool found = false;
+    for (std::size_t row = 0; row < t.size(); ++row) {
+        const bool here = std::abs(t[row] - time) < 1e-9;
+        found |= here;
+        if (here) table.values[static_cast<std::size_t>(at)][row] = value;
+        for (std::size_t c = 0; c < table.columns.size(); ++c) {
+            const double cell = table.values[c][row];
+            text += (c > 0 ? "," : "") + (std::isnan(cell) ? std::string() : fmt::format("{}", cell));
+        }
+        text += '\n';
+    }
+    REQUIRE(found);
+    write_text(csv, text);
+}
+
+}  // namespace
+
+// It was that with the largest mean since the output before, while pictures tell another mean.
+TEST_CASE("the hardest output of an impact is that with the largest force that pictures tell", "[states]") {
+    const FreshFolder folder;
+    const fs::path run = folder.path() / "run";
+    fs::copy(impact_run(), run, fs::copy_options::recursive);
+    const double before = Json::parse(text_of(run / "states" / "look.json"))["impact_time"].get<double>();
+    const std::string name = text_of(run / "barriers.csv");
+    const std::size_t line = name.find('\n') + 1;
+    const fs::path table = run / "barriers" / (name.substr(line, name.find(',', line) - line) + ".csv");
+    const std::vector<double> times = barrier_times(run);
+    const double other = times[times.size() - 2];
+    REQUIRE(other != before);
+    set_value(table, "mean_force", other, 1e9);
+    REQUIRE(states_command({run, {}}) == 0);
+    CHECK(Json::parse(text_of(run / "states" / "look.json"))["impact_time"].get<double>() == other);
 }
 
 TEST_CASE("a structure of which no cohesion is left says so, and since when", "[states]") {

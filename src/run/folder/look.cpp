@@ -16,6 +16,7 @@
 #include "base/constants.h"
 #include "base/error.h"
 #include "observe/table.h"
+#include "run/folder/run_3d.h"
 #include "vtk_io/figures/figure_3d.h"
 #include "vtk_io/reader.h"
 
@@ -261,17 +262,27 @@ double most_pressure(const std::vector<LoadedPatch>& patches) {
     return most(std::move(pressures));
 }
 
-/// The output with points and with the largest load on a barrier, with its loads. The last such one where there is
-/// never any.
+/// Of barriers.csv, in the case's order.
+std::vector<std::string> barrier_names(const fs::path& run_dir) {
+    std::ifstream file(run_dir / "barriers.csv");
+    std::vector<std::string> names;
+    std::string line;
+    for (std::getline(file, line); std::getline(file, line);) names.push_back(line.substr(0, line.find(',')));
+    return names;
+}
+
+/// The output with points and with the largest load on a barrier that pictures tell, with its loads. The last such one
+/// where there is never any.
 Moment3d hardest_moment(const fs::path& run_dir, const Raster& bed) {
     const std::vector<double> times = barrier_times(run_dir), frames = particle_times(run_dir);
     const BarrierMeshes meshes = read_barrier_meshes(run_dir);
+    const ToldForces forces(run_dir, barrier_names(run_dir));
     Moment3d hardest;
     double most_load = -1.0;
     for (std::size_t k = 0; k < times.size(); ++k) {
         Moment3d moment;
         moment.barriers = barrier_solids(read_barriers(run_dir, static_cast<Index>(k)), {}, bed, meshes);
-        const double load = moment.most_loaded() ? moment.most_loaded()->load.head<2>().norm() : 0.0;
+        const double load = forces.load_of(moment, times[k]);
         const auto frame = std::find(frames.begin(), frames.end(), times[k]);
         if (frame == frames.end() || load < most_load) continue;
         moment = moment_3d(read_particles(run_dir, frame - frames.begin()), moment.barriers);

@@ -19,7 +19,7 @@ namespace frana {
 ///   camera: {view: seen up the slope, map: from above, survey: from above, with what was surveyed}: {position, focal,
 ///   up, angle [degree], scale, scale_wide, scale_tall, scale_row [m]}, all over everything ever covered; scale is half
 ///   the height of a square view, the others those of a 3:2, of a 3:5 and of a 1:2 one,
-///   impact_time (the output with the largest load on a barrier), point_radius [m], range.point_speed, range.pressure
+///   impact_time (the output with the largest load on a barrier that pictures tell), point_radius [m], range.point_speed, range.pressure
 ///   [Pa], camera.impact (from the side of the flow): of a run with 3D points and barriers,
 ///   states: {name: ""} for each state the run has the files for, or the sentence that says what it lacks.
 /// Throws UserError when a file that is there cannot be read.
