@@ -332,12 +332,32 @@ TEST_CASE("the states of a profile draw depths a round number of times larger, w
     CHECK(look["legend"] == 2);  // it rises to a ridge in the middle and ends higher than it began
     const std::string formula = look["profile"]["surface"];
     int times = 0;
-    REQUIRE(std::sscanf(formula.c_str(), "elevation+%d*depth", &times) == 1);
+    REQUIRE(std::sscanf(formula.c_str(), "initial_elevation+%d*(surface-initial_elevation)", &times) == 1);
     const double fifth = 0.2 * (*highest - *lowest);
     CHECK((times == 1 || times * shape.deepest <= fifth));
     CHECK(2.5 * times * shape.deepest > fifth);  // the next round number would be too large
     CHECK(look["profile"]["title"].get<std::string>().find("depths times") ==
           (times == 1 ? std::string::npos : std::string("Surfaces along the line, ").size()));
+}
+
+// They were drawn from the bed of their own time: a deposit that became bed lost its exaggeration.
+TEST_CASE("the surfaces of a profile are drawn from the bed at the start, which its files have", "[states]") {
+    const Json look = Json::parse(text_of(full_run() / "states" / "look.json"));
+    for (const char* name : {"surface", "initial_surface"}) {
+        const std::string formula = look["profile"][name];
+        CHECK(formula.find("initial_elevation+") == 0);
+        CHECK(formula.find(std::string("*(") + name + "-initial_elevation)") != std::string::npos);
+    }
+    const FreshFolder folder;
+    const fs::path older = folder.path() / "run";
+    fs::copy(full_run(), older, fs::copy_options::recursive);
+    for (const fs::directory_entry& entry : fs::directory_iterator(older / "profiles")) {
+        std::string text = text_of(entry.path());
+        for (std::size_t at = 0; (at = text.find("\"initial_elevation", at)) != std::string::npos;)
+            text.replace(at, 18, "\"another_elevation");
+        write_text(entry.path(), text);
+    }
+    CHECK_THROWS_WITH(states_command({older, {"profiles"}}), Contains("without initial_elevation; run the case again"));
 }
 
 namespace {

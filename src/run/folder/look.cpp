@@ -209,14 +209,14 @@ std::string lacks_arrays(const Seen& seen, const std::vector<std::string>& names
     return "";
 }
 
-/// Whether faces of barriers can be drawn in their height; earlier versions did not say it.
-bool have_height(const fs::path& run_dir) {
+/// Whether the files of a folder have an array; earlier versions wrote fewer.
+bool have_array(const fs::path& folder, const std::string& array) {
     std::error_code none;
-    for (const fs::directory_entry& entry : fs::directory_iterator(run_dir / "barriers", none)) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, none)) {
         if (entry.path().extension() != ".vtp") continue;
         std::ifstream file(entry.path(), std::ios::binary);
         const std::string text{std::istreambuf_iterator<char>(file), {}};
-        return text.find("\"to_true_height\"") != std::string::npos;
+        return text.find('"' + array + '"') != std::string::npos;
     }
     return true;
 }
@@ -236,7 +236,7 @@ std::string missing_for(const std::string& state, const fs::path& run_dir, const
     if (state == "impact" && !fs::exists(run_dir / "barriers.pvd"))
         return "no 3D points stood before a barrier; give a [[barrier]] and a [[stage]] with model = "
                "\"mpm3d\"";
-    if (state == "impact" && !have_height(run_dir))
+    if (state == "impact" && !have_array(run_dir / "barriers", "to_true_height"))
         return "an earlier version wrote the barriers without to_true_height; run the case again";
     if (state == "stress" && lacks.empty())
         lacks = lacks_arrays(seen, {"stress", "effective_stress"},
@@ -249,6 +249,8 @@ std::string missing_for(const std::string& state, const fs::path& run_dir, const
                              "give a [water] with model = \"free\", leave output.fields at \"all\", and run again");
     if (state == "profiles" && lacks.empty() && !fs::exists(run_dir / "profiles.pvd"))
         return "there is no profiles.pvd; give a [[profile]] and run again";
+    if (state == "profiles" && lacks.empty() && !have_array(run_dir / "profiles", "initial_elevation"))
+        return "an earlier version wrote the profiles without initial_elevation; run the case again";
     if (state == "survey" && lacks.empty() && !fs::exists(run_dir / "survey_areas.vtp"))
         return "the run was not held against a survey; use frana compare, or give [survey] footprint and run again";
     return lacks;
@@ -356,15 +358,19 @@ int free_corner(const std::vector<double>& elevation, double lowest, double high
     return static_cast<int>(std::max_element(room.begin(), room.end()) - room.begin());
 }
 
-/// The chart of the profile: formulas of what is drawn, its title, and where its legend stands.
+/// The chart of the profile: formulas of what is drawn, its title, and where its legend stands. All surfaces are drawn
+/// from the bed at the start, which stays, so that a deposit is as thick whether it still flows or has become bed.
 void look_at_profile(const fs::path& run_dir, Json& look) {
     ProfileShape shape = profile_shape(run_dir);
     if (shape.elevation.empty()) shape.elevation = {0.0};
     const auto [lowest, highest] = std::minmax_element(shape.elevation.begin(), shape.elevation.end());
     const int times = times_deeper(*highest - *lowest, shape.deepest);
     look["legend"] = free_corner(shape.elevation, *lowest, *highest);
-    look["profile"] = {{"surface", fmt::format("elevation+{}*depth", times)},
-                       {"initial_surface", fmt::format("elevation+{}*(initial_surface-elevation)", times)},
+    const auto drawn = [&](const char* surface) {
+        return fmt::format("initial_elevation+{}*({}-initial_elevation)", times, surface);
+    };
+    look["profile"] = {{"surface", drawn("surface")},
+                       {"initial_surface", drawn("initial_surface")},
                        {"title", times == 1 ? "Surfaces along the line"
                                             : fmt::format("Surfaces along the line, depths times {}", times)}};
 }
