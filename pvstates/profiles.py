@@ -62,7 +62,8 @@ def show_map(run_dir, view, profile, look):
     grid = scene.open_grid(run_dir)
     flow, edge = scene.flow_surface(grid, look)
     scene.show_terrain(scene.terrain_surface(run_dir), view)
-    scene.show_flow(flow, view, look, "depth", "depth [m]", look["range"]["depth"], "Viridis (matplotlib)", True)
+    scene.show_flow(flow, view, look, "depth", look["bar"]["depth"], look["range"]["depth"], "Viridis (matplotlib)",
+                    True)
     scene.show_line(edge, view, look["lift"])
     scene.show_line(profile, view, look["range"]["depth"][1], scene.VERMILION, 3.0)  # above the flow
     scene.clock(view, grid)

@@ -405,6 +405,30 @@ TEST_CASE("the hardest output of an impact is that with the largest force that p
     CHECK(Json::parse(text_of(run / "states" / "look.json"))["impact_time"].get<double>() == other);
 }
 
+// They ended below the largest value without a sign.
+TEST_CASE("the bar of a state says so where values lie beyond its end", "[states]") {
+    const FreshFolder folder;
+    const fs::path run = folder.path() / "run";
+    fs::copy(full_run(), run, fs::copy_options::recursive);
+    const std::vector<double> times = frame_times(run);
+    set_value(run / "history.csv", "max_depth", times.back(), 1234.0);
+    REQUIRE(states_command({run, {}}) == 0);
+    const Json look = Json::parse(text_of(run / "states" / "look.json"));
+    CHECK(look["range"]["depth"][1].get<double>() < 1000.0);
+    CHECK(look["bar"]["depth"] == "depth [m], up to 1.23e+03");
+    for (const char* state : {"overview", "profiles"})
+        CHECK(text_of(run / "states" / (std::string(state) + ".pvsm")).find("\"depth [m], up to 1.23e+03\"") !=
+              std::string::npos);
+    set_value(run / "history.csv", "max_depth", times.back(), 0.0);
+    const double end = look["range"]["depth"][1].get<double>();
+    double deepest = 0.0;
+    for (Index k = 0; k < static_cast<Index>(times.size()); ++k)
+        for (const double depth : read_frame(run, k).nodes.at("depth")) deepest = std::max(deepest, depth);
+    REQUIRE(states_command({run, {}}) == 0);
+    const std::string title = Json::parse(text_of(run / "states" / "look.json"))["bar"]["depth"];
+    CHECK((deepest <= end || title.find("depth [m], up to ") == 0));
+}
+
 TEST_CASE("a structure of which no cohesion is left says so, and since when", "[states]") {
     const Json look = Json::parse(text_of(structure_run() / "states" / "look.json"));
     const std::string text = look["cohesion_text"];

@@ -14,6 +14,7 @@ namespace frana {
 ///   potential_from_start (a formula for history.csv's rows) [J],
 ///   range: {depth, speed, stress, effective_stress: [low, high]}, of two phases water_depth and
 ///   bound_depth, round numbers that hold 99.5 % of the wet nodes,
+///   bar: titles of the same, which say so where values lie beyond the range,
 ///   cross: {stride, scale [m/Pa], extent} of the principal stresses, legend: corner of the profile's chart, profile:
 ///   {surface, initial_surface: formulas of what the chart shows, title}, cohesion_text: what is said of a structure,
 ///   camera: {view: seen up the slope, map: from above, survey: from above, with what was surveyed}: {position, focal,
