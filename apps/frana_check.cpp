@@ -11,6 +11,7 @@
 #include "compare/flow_width.h"
 #include "compare/runout.h"
 #include "frana_check.h"
+#include "frana_check_stage.h"
 #include "frana_commands.h"
 #include "io/gdal_reader.h"
 #include "run/folder/run_insitu.h"
@@ -33,6 +34,8 @@ constexpr double seconds_per_particle_step = 150e-9;  ///< whole step on one cor
 constexpr double seconds_per_point_step = 300e-9;  ///< of 3D points
 /// Of those with faces of barriers near: 650 in cases/barrier_hill, 940 in cases/wall, which has few points.
 constexpr double seconds_per_point_step_at_barriers = 700e-9;
+/// Of those thinner than a cell: 1280 in an avalanche of 0.1 cells at a dam, 1400 in one of 0.2.
+constexpr double seconds_per_point_step_when_thin = 1300e-9;
 
 constexpr double seconds_per_cell_step = 100e-9;  ///< of cells of free water
 constexpr double kWaterCfl = 0.45;                ///< part of a cell that its waves pass in a step
@@ -257,22 +260,18 @@ std::string seconds_text(double seconds) {
     return seconds < 7200.0 ? fmt::format("{:.0f} min", seconds / 60.0) : fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
-/// The 3D stage: sound is ten times as fast as the material.
 std::string stage_text(const Scene& scene) {
     const SolidStage& stage = *scene.solid;
-    double depth = 0.0;
-    for (const double here : scene.particles.depth) depth = std::max(depth, here);
-    const double sound_speed = stage.sound_speed.value_or(10.0 * std::sqrt(2.0 * scene.gravity * depth));
-    const double steps =
-                     std::ceil((stage.until.value_or(scene.end) - stage.from) * sound_speed / (stage.cfl * stage.cell)),
-                 points = most_points(scene);
-    const double each = scene.barriers.empty() ? seconds_per_point_step : seconds_per_point_step_at_barriers;
+    const StageForecast f = forecast_stage(scene);
+    const double each = f.thin                   ? seconds_per_point_step_when_thin
+                        : scene.barriers.empty() ? seconds_per_point_step
+                                                 : seconds_per_point_step_at_barriers;
     return fmt::format(
-        "stage       3D points from {:.6g} s to {:.6g} s, at most about {:.3g} of them, {:.3g} MB; {:.0f} steps "
-        "or more with "
-        "sound at {:.3g} m/s, {} on one core if all are there, assuming {:.0f} ns per point and step\n",
-        stage.from, stage.until.value_or(scene.end), points, points * bytes_per_point / 1e6, steps, sound_speed,
-        seconds_text(steps * points * each), each * 1e9);
+        "stage       3D points from {:.6g} s to {:.6g} s, about {:.3g} of them if all of the flow is there at once, "
+        "{:.3g} MB; about {:.0f} steps with sound at {:.3g} m/s and flow at {:.3g} m/s, {} on one core, assuming "
+        "{:.0f} ns per point and step\n",
+        stage.from, stage.until.value_or(scene.end), f.points, f.points * bytes_per_point / 1e6, f.steps, f.sound_speed,
+        f.speed, seconds_text(f.steps * f.points * each), each * 1e9);
 }
 
 /// How many frames a run of the whole time leaves, and about how large they are. There is a remark where they are many.

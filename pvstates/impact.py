@@ -32,9 +32,10 @@ def show_points(run_dir, view, look):
     display.GaussianRadius = look["point_radius"]
     display.ShaderPreset = "Plain circle"
     display.ScaleByArray = display.OpacityByArray = 0
-    colours = scene.paint(display, view, "speed", "speed [m/s]", look["range"]["point_speed"], "Plasma (matplotlib)")
+    colours = scene.paint(display, view, "speed", look["bar"]["point_speed"], look["range"]["point_speed"],
+                          "Plasma (matplotlib)")
     scene.without_lamp(display)
-    scene.bar_of(colours, view, "speed [m/s]").WindowLocation = "Upper Right Corner"
+    scene.bar_of(colours, view, look["bar"]["point_speed"]).WindowLocation = "Upper Right Corner"
     return particles
 
 
@@ -44,5 +45,6 @@ def show_barriers(run_dir, view, look):
     barriers = WarpByScalar(registrationName="barriers in their height", Input=faces)
     barriers.Scalars = ["POINTS", "to_true_height"]
     display = Show(barriers, view)
-    scene.paint(display, view, "pressure", "pressure [Pa]", look["range"]["pressure"], "Greens", True, where="CELLS")
+    scene.paint(display, view, "pressure", look["bar"]["pressure"], look["range"]["pressure"], "Greens", True,
+                where="CELLS")
     display.Ambient, display.Diffuse, display.Specular = 0.7, 0.3, 0.0

@@ -49,6 +49,8 @@ def marked(look):
             return [walk(part, "%s/%d" % (pointer, k)) for k, part in enumerate(value)]
         if isinstance(value, float) and value not in (0.0, 1.0, -1.0):
             value = value * (1.0 - 1e-6 * (7.0 + 0.731 * len(slots)))
+        if pointer.startswith("/bar/"):
+            value += " " * (len(slots) % 16 + 1)  # an axis may have the same title, and another bar
         if not isinstance(value, int) and value not in (0.0, 1.0, -1.0, "") and not pointer.startswith("/states"):
             slots.append((value, pointer))
         return value

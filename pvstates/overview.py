@@ -15,14 +15,15 @@ def build(run_dir):
     flow, edge = scene.flow_surface(grid, look)
 
     scene.show_terrain(terrain, left_view)
-    scene.show_flow(flow, left_view, look, "depth", "depth [m]", look["range"]["depth"], "Viridis (matplotlib)", True)
+    scene.show_flow(flow, left_view, look, "depth", look["bar"]["depth"], look["range"]["depth"],
+                    "Viridis (matplotlib)", True)
     scene.show_line(edge, left_view, look["lift"])
     scene.clock(left_view, grid)
     scene.heading(left_view, "Flow depth")
 
     scene.show_terrain(terrain, right_view)
-    scene.show_particles(run_dir, right_view, look, look["lift"], ("speed", "speed [m/s]", look["range"]["speed"],
-                                                                   "Plasma (matplotlib)"))
+    scene.show_particles(run_dir, right_view, look, look["lift"],
+                         ("speed", look["bar"]["speed"], look["range"]["speed"], "Plasma (matplotlib)"))
     scene.clock(right_view, grid)
     scene.heading(right_view, "Particles and their speed")
     scene.link_cameras([left_view, right_view])

@@ -43,12 +43,12 @@ def build(run_dir):
     water, water_edge = phase(both, "free water", "surface", "water_depth", look)
     for view in views + [aslant]:
         scene.show_terrain(terrain, view)
-    for view, (surface, edge), array, title, preset, invert in (
-            (views[0], (particles, particles_edge), "bound_depth", "particles [m]", "Viridis (matplotlib)", False),
-            (views[1], (water, water_edge), "water_depth", "free water [m]", "Linear Blue (8_31f)", False)):
+    for view, (surface, edge), array, preset, invert in (
+            (views[0], (particles, particles_edge), "bound_depth", "Viridis (matplotlib)", False),
+            (views[1], (water, water_edge), "water_depth", "Linear Blue (8_31f)", False)):
         scene.show_line(edge, view, look["lift"])
-        scene.show_flow(surface, view, look, array, title, look["range"][array], preset, invert)
-    scene.show_flow(particles, aslant, look, "bound_depth", "particles [m]", look["range"]["bound_depth"],
+        scene.show_flow(surface, view, look, array, look["bar"][array], look["range"][array], preset, invert)
+    scene.show_flow(particles, aslant, look, "bound_depth", look["bar"]["bound_depth"], look["range"]["bound_depth"],
                     "Viridis (matplotlib)")
     clear = Show(water, aslant)
     clear.Position = [0.0, 0.0, look["lift"]]

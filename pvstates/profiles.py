@@ -1,5 +1,6 @@
 """Terrain, initial, present and final surface along a line of the case ([[profile]]), beside the map with that line.
 On high relief depths are drawn so many times larger, as the chart's title says, that the surfaces can be told apart.
+All surfaces are drawn so from the terrain at the start: what has become bed is as thick as while it flowed.
 
 The chart and the map show the same source: stations selected in one light up in the other. With several profiles, the
 source "profile" (a Threshold) chooses which: 0 is the first of the case.
@@ -30,7 +31,7 @@ def build(run_dir):
     scene.show_curves(profile, surfaces, "distance",
                       {"drawn_initial_surface": ("initial surface", scene.GREY, 2, 2),
                        "drawn_surface": ("surface at this time", scene.BLUE, 2, 1),
-                       "elevation": ("terrain", scene.BLACK, 2, 1)})
+                       "initial_elevation": ("terrain at the start", scene.BLACK, 2, 1)})
     scene.show_curves(final, depths, "distance", {"depth": ("final depth", scene.VERMILION, 2, 1)})
     scene.show_curves(profile, depths, "distance", {"depth": ("depth at this time", scene.BLUE, 2, 1)})
     scene.at_time([map_view, surfaces, depths], look["last_time"])
@@ -61,7 +62,8 @@ def show_map(run_dir, view, profile, look):
     grid = scene.open_grid(run_dir)
     flow, edge = scene.flow_surface(grid, look)
     scene.show_terrain(scene.terrain_surface(run_dir), view)
-    scene.show_flow(flow, view, look, "depth", "depth [m]", look["range"]["depth"], "Viridis (matplotlib)", True)
+    scene.show_flow(flow, view, look, "depth", look["bar"]["depth"], look["range"]["depth"], "Viridis (matplotlib)",
+                    True)
     scene.show_line(edge, view, look["lift"])
     scene.show_line(profile, view, look["range"]["depth"][1], scene.VERMILION, 3.0)  # above the flow
     scene.clock(view, grid)

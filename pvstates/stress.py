@@ -40,8 +40,9 @@ def build(run_dir):
               ("effective_stress_xx", "effective_xx", "Effective stress xx [Pa]", effective, SEQUENTIAL),
               ("effective_stress_yy", "effective_yy", "Effective stress yy [Pa]", effective, SEQUENTIAL)]
     for view, (component, name, title, limits, preset) in zip(views, panels):
+        bar = look["bar"]["effective_stress" if limits is effective else "stress"]
         scene.show_terrain(terrain, view)
-        scene.show_flow(calculated(flow, name, component), view, look, name, "Pa", limits, preset)
+        scene.show_flow(calculated(flow, name, component), view, look, name, bar, limits, preset)
         scene.show_line(edge, view, look["lift"])
         scene.heading(view, title)
     scene.show_terrain(terrain, views[5])
@@ -89,6 +90,6 @@ def show_crosses(grid, view, look):
         display = Show(glyphs, view)
         display.LineWidth = 2.0
         display.Position = [0.0, 0.0, look["lift"]]
-        colours = scene.paint(display, view, name, "Pa", look["range"]["stress"], DIVERGING)
+        colours = scene.paint(display, view, name, look["bar"]["stress"], look["range"]["stress"], DIVERGING)
         scene.without_lamp(display)
         display.SetScalarBarVisibility(view, number == 1)

@@ -25,13 +25,14 @@ def build(run_dir):
         scene.show_line(edge, view, look["lift"])
     scene.show_particles(run_dir, views[0], look, look["lift_areas"],  # 0 is whole, 1 is grains
                          ("damage", "damage", [0.0, 1.0], "Inferno (matplotlib)", True))
-    scene.show_flow(flow, views[1], look, "depth", "depth [m]", look["range"]["depth"], "Viridis (matplotlib)")
-    scene.show_flow(flow, views[2], look, "cohesion", "cohesion [Pa]", look["range"]["cohesion"],
+    scene.show_flow(flow, views[1], look, "depth", look["bar"]["depth"], look["range"]["depth"], "Viridis (matplotlib)")
+    scene.show_flow(flow, views[2], look, "cohesion", look["bar"]["cohesion"], look["range"]["cohesion"],
                     "Viridis (matplotlib)")
     tension = Calculator(registrationName="tension", Input=flow)
     tension.AttributeType = "Point Data"
     tension.ResultArrayName, tension.Function = "tension", TENSION
-    scene.show_flow(tension, views[3], look, "tension", "Pa", look["range"]["stress"], "Blue Orange (divergent)")
+    scene.show_flow(tension, views[3], look, "tension", look["bar"]["stress"], look["range"]["stress"],
+                    "Blue Orange (divergent)")
     for view, text in zip(views, ("Damage", "Depth", look["cohesion_text"], "Larger principal stress")):
         scene.heading(view, text, "cohesion" if text == look["cohesion_text"] else text)
     scene.clock(views[0], grid)

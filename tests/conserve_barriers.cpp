@@ -604,9 +604,27 @@ TEST_CASE("What goes over a crest in fewer than four cells is remarked upon, wit
     };
     const std::vector<std::string> thin = told(1.5);
     REQUIRE(thin.size() == 1);
-    CHECK(thin.front().find("wall: 0.002 m3 went over it, up to 0.563 m deep on its crest, 2.3 cells; expected 4") ==
-          0);
+    CHECK(thin.front().find("wall: 0.002 m3 of 3D points went over it, up to 0.563 m deep on its crest, 2.3 cells; "
+                            "expected 4") == 0);
     CHECK(told(2.1).empty());
+}
+
+// It told the volume of all stages with the depth of the points.
+TEST_CASE("The remark on thin flow over a crest tells points and particles apart", "[barrier]") {
+    const auto with_particles = [](double z) {
+        BarrierWatch watch = OntoWall([](double, double) { return 0.0; }, {Vec3(1.8, 2.5, z)}).seen();
+        BarrierLoads before = watch.loads(), after = before;
+        after.barriers[0].overtopped += 100.0;
+        watch.add(before, after);
+        return watch;
+    };
+    const BarrierWatch both = with_particles(1.5);
+    CHECK(both.loads().barriers[0].overtopped == Approx(100.0 + OntoWall::volume));
+    const std::vector<std::string> thin = both.remarks(0.0);
+    REQUIRE(thin.size() == 1);
+    CHECK(thin.front().find("wall: 0.002 m3 of 3D points went over it, besides 100 m3 of particles, up to 0.563 m") ==
+          0);
+    CHECK(with_particles(0.5).remarks(0.0).empty());  // the point meets the wall's face
 }
 
 // They were about its top.

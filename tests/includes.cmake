@@ -105,7 +105,7 @@ room(src/run/converge base terrain compare run run/folder scene io vtk_io vtk_io
 room(src/run/ensemble base terrain ensemble run run/web run/folder scene io vtk_io vtk_io/figures PACKAGES "nlohmann/")
 room(src/run/calibrate base terrain compare ensemble observe run run/folder run/ensemble scene io vtk_io/figures
      PACKAGES "nlohmann/|nlopt")
-room(apps base terrain particles convert compare run run/web run/folder run/calibrate run/converge run/ensemble scene shallow
+room(apps base terrain particles convert compare run run/web run/folder run/calibrate run/converge run/ensemble scene shallow coupling
      checks/verify checks/bench checks/fuzz io vtk_io vtk_io/figures PACKAGES "gdal|ogr|cpl_|CLI/|nlohmann/|benchmark/")
 
 room(apps/python base terrain particles run run/folder run/ensemble scene io vtk_io apps)

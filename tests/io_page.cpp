@@ -279,6 +279,12 @@ TEST_CASE("The page of a flood tells what came in, where its front is measured f
         CHECK(curves.at("runout_name") == "Farthest front from the middle of inflow torrent");
         CHECK(curves.at("volume_name") == "Volume, with what has become bed");
         CHECK(curves.at("volume").back().get<double>() == Approx(flows + lies).epsilon(1e-6));  // float32 of frames
+        // Between frames it went straight, though much comes to lie in few steps.
+        const Table history = read_table(slope.run_dir() / "history.csv");
+        const std::vector<double>&in = history.column("mass_in"), &left = history.column("mass_left");
+        REQUIRE(curves.at("volume").size() == history.rows());
+        for (std::size_t k = 0; k < history.rows(); ++k)
+            REQUIRE(std::abs(curves.at("volume")[k].get<double>() - (in[k] - left[k]) / 1600.0) <= 1e-3);  // of 400 m3
     };
     check(data_of(text_of(slope.run_dir() / "figures" / "view.html")));
     REQUIRE(call_frana(slope.path(), "figures run --web").code == 0);

@@ -4,6 +4,8 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,6 +15,7 @@
 #include <regex>
 #include <set>
 
+#include "base/atomic_file.h"
 #include "base/colour.h"
 #include "base/error.h"
 #include "catch.h"
@@ -329,12 +332,101 @@ TEST_CASE("the states of a profile draw depths a round number of times larger, w
     CHECK(look["legend"] == 2);  // it rises to a ridge in the middle and ends higher than it began
     const std::string formula = look["profile"]["surface"];
     int times = 0;
-    REQUIRE(std::sscanf(formula.c_str(), "elevation+%d*depth", &times) == 1);
+    REQUIRE(std::sscanf(formula.c_str(), "initial_elevation+%d*(surface-initial_elevation)", &times) == 1);
     const double fifth = 0.2 * (*highest - *lowest);
     CHECK((times == 1 || times * shape.deepest <= fifth));
     CHECK(2.5 * times * shape.deepest > fifth);  // the next round number would be too large
     CHECK(look["profile"]["title"].get<std::string>().find("depths times") ==
           (times == 1 ? std::string::npos : std::string("Surfaces along the line, ").size()));
+}
+
+// They were drawn from the bed of their own time: a deposit that became bed lost its exaggeration.
+TEST_CASE("the surfaces of a profile are drawn from the bed at the start, which its files have", "[states]") {
+    const Json look = Json::parse(text_of(full_run() / "states" / "look.json"));
+    for (const char* name : {"surface", "initial_surface"}) {
+        const std::string formula = look["profile"][name];
+        CHECK(formula.find("initial_elevation+") == 0);
+        CHECK(formula.find(std::string("*(") + name + "-initial_elevation)") != std::string::npos);
+    }
+    const FreshFolder folder;
+    const fs::path older = folder.path() / "run";
+    fs::copy(full_run(), older, fs::copy_options::recursive);
+    for (const fs::directory_entry& entry : fs::directory_iterator(older / "profiles")) {
+        std::string text = text_of(entry.path());
+        for (std::size_t at = 0; (at = text.find("\"initial_elevation", at)) != std::string::npos;)
+            text.replace(at, 18, "\"another_elevation");
+        write_text(entry.path(), text);
+    }
+    CHECK_THROWS_WITH(states_command({older, {"profiles"}}), Contains("without initial_elevation; run the case again"));
+}
+
+namespace {
+
+/// A table with another number in the row of a time.
+void set_value(const fs::path& csv, const std::string& column, double time, double value) {
+    Table table = read_table(csv);
+    const auto at = std::find(table.columns.begin(), table.columns.end(), column) - table.columns.begin();
+    std::string text;
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+        text += (c > 0 ? "," : "") + table.columns[c] + (table.units[c].empty() ? "" : " [" + table.units[c] + "]");
+    text += '\n';
+    const std::vector<double> t = table.column("t");
+    bool found = false;
+    for (std::size_t row = 0; row < t.size(); ++row) {
+        const bool here = std::abs(t[row] - time) < 1e-9;
+        found |= here;
+        if (here) table.values[static_cast<std::size_t>(at)][row] = value;
+        for (std::size_t c = 0; c < table.columns.size(); ++c) {
+            const double cell = table.values[c][row];
+            text += (c > 0 ? "," : "") + (std::isnan(cell) ? std::string() : fmt::format("{}", cell));
+        }
+        text += '\n';
+    }
+    REQUIRE(found);
+    write_text(csv, text);
+}
+
+}  // namespace
+
+// It was that with the largest mean since the output before, while pictures tell another mean.
+TEST_CASE("the hardest output of an impact is that with the largest force that pictures tell", "[states]") {
+    const FreshFolder folder;
+    const fs::path run = folder.path() / "run";
+    fs::copy(impact_run(), run, fs::copy_options::recursive);
+    const double before = Json::parse(text_of(run / "states" / "look.json"))["impact_time"].get<double>();
+    const std::string name = text_of(run / "barriers.csv");
+    const std::size_t line = name.find('\n') + 1;
+    const fs::path table = run / "barriers" / (name.substr(line, name.find(',', line) - line) + ".csv");
+    const std::vector<double> times = barrier_times(run);
+    const double other = times[times.size() - 2];
+    REQUIRE(other != before);
+    set_value(table, "mean_force", other, 1e9);
+    REQUIRE(states_command({run, {}}) == 0);
+    CHECK(Json::parse(text_of(run / "states" / "look.json"))["impact_time"].get<double>() == other);
+}
+
+// They ended below the largest value without a sign.
+TEST_CASE("the bar of a state says so where values lie beyond its end", "[states]") {
+    const FreshFolder folder;
+    const fs::path run = folder.path() / "run";
+    fs::copy(full_run(), run, fs::copy_options::recursive);
+    const std::vector<double> times = frame_times(run);
+    set_value(run / "history.csv", "max_depth", times.back(), 1234.0);
+    REQUIRE(states_command({run, {}}) == 0);
+    const Json look = Json::parse(text_of(run / "states" / "look.json"));
+    CHECK(look["range"]["depth"][1].get<double>() < 1000.0);
+    CHECK(look["bar"]["depth"] == "depth [m], up to 1.23e+03");
+    for (const char* state : {"overview", "profiles"})
+        CHECK(text_of(run / "states" / (std::string(state) + ".pvsm")).find("\"depth [m], up to 1.23e+03\"") !=
+              std::string::npos);
+    set_value(run / "history.csv", "max_depth", times.back(), 0.0);
+    const double end = look["range"]["depth"][1].get<double>();
+    double deepest = 0.0;
+    for (Index k = 0; k < static_cast<Index>(times.size()); ++k)
+        for (const double depth : read_frame(run, k).nodes.at("depth")) deepest = std::max(deepest, depth);
+    REQUIRE(states_command({run, {}}) == 0);
+    const std::string title = Json::parse(text_of(run / "states" / "look.json"))["bar"]["depth"];
+    CHECK((deepest <= end || title.find("depth [m], up to ") == 0));
 }
 
 TEST_CASE("a structure of which no cohesion is left says so, and since when", "[states]") {

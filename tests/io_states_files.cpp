@@ -113,7 +113,7 @@ TEST_CASE("profiles hold what the frame has at their stations, and the first fra
         {"a", {{west + 2.3 * cell, south + 2 * cell}, {west + 9 * cell, south + 7 * cell}}},
         {"b", {{west + 3 * cell, south + 3 * cell}, {west + 3 * cell, south + 9 * cell}}}};
     const auto writer = make_profile_writer(folder.path(), profiles);
-    std::vector<double> first_surfaces;
+    std::vector<double> first_surfaces, first_beds;
     for (const double time : {0.0, 2.5}) {
         FrameMaker maker(time > 0.0 ? 1 : 0, time, 100, grid);
         writer->observe(maker.frame);
@@ -138,8 +138,10 @@ TEST_CASE("profiles hold what the frame has at their stations, and the first fra
                 holds("depth", flow.depth);
                 holds("surface", flow.elevation + flow.depth);
                 holds("velocity_along", flow.velocity.dot(station.along));
-                if (time == 0.0) first_surfaces.push_back(flow.elevation + flow.depth);
+                if (time == 0.0)
+                    first_surfaces.push_back(flow.elevation + flow.depth), first_beds.push_back(flow.elevation);
                 holds("initial_surface", first_surfaces.at(static_cast<std::size_t>(point)));
+                holds("initial_elevation", first_beds.at(static_cast<std::size_t>(point)));
                 ++point;
             }
         }

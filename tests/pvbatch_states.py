@@ -30,7 +30,7 @@ COLOURED = {  # least share of coloured pixels, of those in the middle; a tenth 
 ARRAYS = {  # what the state's own sources must have made, besides what its readers read
     "overview": ["depth", "surface", "speed"],
     "stress": ["sigma_xx", "sigma_yy", "sigma_xy", "effective_xx", "effective_yy", "principal_1", "principal_2"],
-    "profiles": ["distance", "elevation", "drawn_initial_surface", "drawn_surface", "depth"],
+    "profiles": ["distance", "initial_elevation", "drawn_initial_surface", "drawn_surface", "depth"],
     "impact": ["model", "speed", "pressure", "barrier", "to_true_height", "hillshade"],
     "structure": ["damage", "cohesion", "tension", "hillshade"],
     "phases": ["bound_depth", "bound_surface", "water_depth", "hillshade"],

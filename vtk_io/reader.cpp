@@ -169,12 +169,17 @@ ProfileShape profile_shape(const std::filesystem::path& run_dir) {
     for (Index k = 0; k < 7; ++k) {
         const vtkSmartPointer<vtkPolyData> lines =
             read_polydata(run_dir / entry_of(pvd, k * (frames - 1) / 6).first.file);
-        vtkDataArray* const depth = lines->GetPointData()->GetArray("depth");
+        vtkPointData* const data = lines->GetPointData();
+        vtkDataArray *const depth = data->GetArray("depth"), *const surface = data->GetArray("surface"),
+                            *const first = data->GetArray("initial_elevation");
         if (lines->GetNumberOfCells() == 0 || !depth) return shape;
         vtkIdList* const stations = lines->GetCell(0)->GetPointIds();
         for (vtkIdType n = 0; n < stations->GetNumberOfIds(); ++n) {
             if (k == 0) shape.elevation.push_back(lines->GetPoint(stations->GetId(n))[2]);
-            shape.deepest = std::max(shape.deepest, depth->GetTuple1(stations->GetId(n)));
+            const vtkIdType at = stations->GetId(n);
+            shape.deepest = std::max(shape.deepest, depth->GetTuple1(at));
+            if (surface && first)
+                shape.deepest = std::max(shape.deepest, std::abs(surface->GetTuple1(at) - first->GetTuple1(at)));
         }
     }
     return shape;

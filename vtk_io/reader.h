@@ -65,7 +65,7 @@ LoadedFrame read_maps(const std::filesystem::path& dir);
 /// The first profile of a run, over at most seven of its frames.
 struct ProfileShape {
     std::vector<double> elevation;  ///< at its stations in the first frame [m]
-    double deepest = 0.0;           ///< flow on it [m]
+    double deepest = 0.0;           ///< flow on it, or how far its surface is from the first frame's bed [m]
 };
 
 /// Of RUN_DIR/profiles.pvd; empty when the profile has no station. UserError when a file is missing or damaged.

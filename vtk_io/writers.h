@@ -31,7 +31,7 @@ std::unique_ptr<Observer> make_grid_writer(const std::filesystem::path& run_dir)
 
 /// profiles.pvd and profiles/profiles_NNNNNN.vtp: a line for each profile, points on the bed at its stations. Stations
 /// without terrain are left out (observe/profiles.h). Point data `distance`, `elevation`, `depth`, `surface`,
-/// `initial_surface` (of the first frame) [m], `velocity_along` [m/s]. Cell data `profile` (0, 1, ... as in `lines`).
+/// `initial_surface`, `initial_elevation` (of the first frame) [m], `velocity_along` [m/s]. Cell data `profile` (0, 1, ... as in `lines`).
 /// Their names are in the field data, `profile_names`. Errors as above.
 std::unique_ptr<Observer> make_profile_writer(const std::filesystem::path& run_dir, std::vector<ProfileLine> lines);
 

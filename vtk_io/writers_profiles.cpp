@@ -24,8 +24,9 @@ namespace {
 struct Column {
     const char *name, *unit;
 };
-constexpr Column columns[] = {{"distance", "m"}, {"elevation", "m"},       {"depth", "m"},
-                              {"surface", "m"},  {"initial_surface", "m"}, {"velocity_along", "m/s"}};
+constexpr Column columns[] = {{"distance", "m"},         {"elevation", "m"},       {"depth", "m"},
+                              {"surface", "m"},          {"initial_surface", "m"}, {"velocity_along", "m/s"},
+                              {"initial_elevation", "m"}};
 constexpr std::size_t column_count = std::size(columns);
 
 /// Stations of one profile at one time; those without terrain are left out.
@@ -44,9 +45,10 @@ public:
     void observe(const Frame& frame) override {
         std::vector<Line> sampled;
         for (const ProfileLine& line : lines_) sampled.push_back(along(line, frame));
-        if (first_.empty()) first_ = surfaces_of(sampled);
+        if (first_.empty()) first_ = column_of(sampled, 3), first_bed_ = column_of(sampled, 1);
         for (std::size_t k = 0; k < sampled.size(); ++k)
-            for (std::size_t row = 0; row < sampled[k].rows.size(); ++row) sampled[k].rows[row][4] = first_[k][row];
+            for (std::size_t row = 0; row < sampled[k].rows.size(); ++row)
+                sampled[k].rows[row][4] = first_[k][row], sampled[k].rows[row][6] = first_bed_[k][row];
         const auto data = polydata_of(sampled);
         add_time(data->GetFieldData(), frame.status.time);
         vtkNew<WithBase64Stream<vtkXMLPolyDataWriter>> writer;
@@ -56,15 +58,19 @@ public:
     void serialize(Archive& archive) override {
         series_.serialize(archive);
         first_.resize(lines_.size());  // a state is saved after the first frame only
-        for (std::size_t k = 0; k < first_.size(); ++k) archive.array("surface_" + std::to_string(k), first_[k]);
+        first_bed_.resize(lines_.size());
+        for (std::size_t k = 0; k < first_.size(); ++k) {
+            archive.array("surface_" + std::to_string(k), first_[k]);
+            archive.array("bed_" + std::to_string(k), first_bed_[k]);
+        }
     }
 
 private:
-    static std::vector<std::vector<double>> surfaces_of(const std::vector<Line>& sampled) {
-        std::vector<std::vector<double>> surfaces(sampled.size());
+    static std::vector<std::vector<double>> column_of(const std::vector<Line>& sampled, std::size_t column) {
+        std::vector<std::vector<double>> values(sampled.size());
         for (std::size_t k = 0; k < sampled.size(); ++k)
-            for (const auto& row : sampled[k].rows) surfaces[k].push_back(row[3]);
-        return surfaces;
+            for (const auto& row : sampled[k].rows) values[k].push_back(row[column]);
+        return values;
     }
 
     static Line along(const ProfileLine& profile, const Frame& frame) {
@@ -74,7 +80,7 @@ private:
             if (!std::isfinite(flow.elevation)) continue;
             line.points.push_back({station.point.x(), station.point.y(), flow.elevation});
             line.rows.push_back({station.distance, flow.elevation, flow.depth, flow.elevation + flow.depth, 0.0,
-                                 flow.velocity.dot(station.along)});
+                                 flow.velocity.dot(station.along), 0.0});
         }
         return line;
     }
@@ -118,7 +124,8 @@ private:
 
     PvdSeries series_;
     std::vector<ProfileLine> lines_;
-    std::vector<std::vector<double>> first_;  ///< surface of the first frame at every station [m]
+    std::vector<std::vector<double>> first_;      ///< surface of the first frame at every station [m]
+    std::vector<std::vector<double>> first_bed_;  ///< its bed there [m]
 };
 
 }  // namespace

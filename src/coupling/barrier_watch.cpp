@@ -49,6 +49,7 @@ BarrierWatch::BarrierWatch(const Scene& scene, const Mpm3d& flow, double blur)
     at_start_.assign(surfaces_.size(), 0.0);
     due_.assign(surfaces_.size(), std::numeric_limits<double>::max());
     over_crest_.assign(surfaces_.size(), 0.0);
+    points_over_.assign(surfaces_.size(), 0.0);
 }
 
 /// Particles come no nearer than a cell of the terrain, where a barrier's ramp begins.
@@ -96,16 +97,20 @@ std::vector<std::string> BarrierWatch::remarks(double from) const {
 }
 
 /// A layer of few cells is braked at a crest: its lowest nodes take part in what stands before the face. Of what should
-/// go over a wall of 1 m under 2 m of water about a thirteenth did on cells of 0.5 m, and four tenths on 0.25 m.
+/// go over a wall of 1 m under 2 m of water about a thirteenth did on cells of 0.5 m, and four tenths on 0.25 m. That
+/// holds for points. What went over as particles, before, after or beside them, does not depend on their cells.
 void BarrierWatch::remark_thin_over(std::vector<std::string>& remarks) const {
     constexpr double kEnoughCells = 4.0;
     for (std::size_t n = 0; n < names_.size(); ++n) {
         const double depth = over_crest_[n];
-        if (!(depth > 0.0) || !(loads_.barriers[n].overtopped > 0.0) || depth >= kEnoughCells * cell_) continue;
+        if (!(depth > 0.0) || !(points_over_[n] > 0.0) || depth >= kEnoughCells * cell_) continue;
+        const double rest = loads_.barriers[n].overtopped - points_over_[n];
+        const std::string besides = rest > 0.0 ? fmt::format(", besides {:.4g} m3 of particles", rest) : "";
         remarks.push_back(fmt::format(
-            "{}: {:.4g} m3 went over it, up to {:.3g} m deep on its crest, {:.2g} cells; expected {:.0f} or "
-            "more, or far too little goes over; stage.cell = {:g} would do, and smaller ones let more over",
-            names_[n], loads_.barriers[n].overtopped, depth, depth / cell_, kEnoughCells,
+            "{}: {:.4g} m3 of 3D points went over it{}, up to {:.3g} m deep on its crest, {:.2g} cells; expected "
+            "{:.0f} or more, or far too little of them goes over; stage.cell = {:g} would do, and smaller ones let "
+            "more over",
+            names_[n], points_over_[n], besides, depth, depth / cell_, kEnoughCells,
             round_number_below(depth / kEnoughCells)));
     }
 }
@@ -174,7 +179,10 @@ void BarrierWatch::sample(const Mpm3d& flow) {
             }
             if (in_span) on_top_.add(surface - top, mass);
             if (place == over) continue;
-            (place == below ? load.overtopped : placed_) += volume;
+            if (place == below)
+                load.overtopped += volume, points_over_[n] += volume;
+            else
+                placed_ += volume;
             place = over;
         }
         load.reach(reached_.level());
@@ -227,6 +235,7 @@ void BarrierWatch::serialize(Archive& archive) {
     archive.numbers("placed", {&placed_});
     archive.array("at_start", at_start_);
     archive.array("over_crest", over_crest_);
+    archive.array("points_over", points_over_);
     for (std::size_t n = 0; n < places_.size(); ++n) {
         archive.array("places_" + std::to_string(n), places_[n]);
         archive.numbers("sums_" + std::to_string(n), {&loads_.barriers[n].run_up, &loads_.barriers[n].overtopped});

@@ -50,8 +50,9 @@ private:
     std::vector<std::string> names_;                 ///< of each
     std::vector<std::vector<std::uint8_t>> places_;  ///< per barrier, by number of the point: where it was so far
     std::vector<double> at_start_;                   ///< volume at each as points begin [m3]
-    std::vector<double> due_;         ///< of each: when the first point comes to it, at the speed it came with [s]
-    std::vector<double> over_crest_;  ///< of each: largest depth of points on its top [m]
+    std::vector<double> due_;          ///< of each: when the first point comes to it, at the speed it came with [s]
+    std::vector<double> over_crest_;   ///< of each: largest depth of points on its top [m]
+    std::vector<double> points_over_;  ///< of each: volume of what went over it as points [m3]
     BarrierLoads loads_;
     RunUp reached_, on_top_;        ///< at one barrier at a time: elevations, and heights over its top
     double density_, ramp_, cell_;  ///< ramp: of a barrier for particles; cell: of points [m]

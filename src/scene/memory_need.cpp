@@ -75,9 +75,10 @@ MemoryNeed memory_need(double nodes, double particles, bool vtk) {
 double memory_of_part(double nodes) { return part_node_rate * nodes; }
 
 double most_points(const Scene& scene) {
-    double volume = 0.0;
-    for (const double part : scene.particles.volume) volume += part;
-    return std::ceil(volume / std::pow(scene.solid->spacing, 3));
+    const double full = std::pow(scene.solid->spacing, 3);
+    double points = 0.0;
+    for (const double volume : scene.particles.volume) points += std::max(1.0, volume / full);
+    return std::ceil(points);
 }
 
 /// Of the laws of nodes, in the scene and in the solver [bytes].

@@ -24,7 +24,7 @@ double memory_of_fields(const Scene& scene, double nodes);
 /// Of a scene that is built.
 MemoryNeed memory_need(const Scene& scene);
 
-/// 3D points if all of the release were in the window, 8 a cell of (2 spacing)^3.
+/// 3D points if all of the release were in the window: one of each particle at least, or 8 a cell of (2 spacing)^3.
 double most_points(const Scene& scene);
 constexpr double bytes_per_point = 450.0;  ///< of 3D points
 

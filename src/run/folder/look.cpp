@@ -16,6 +16,7 @@
 #include "base/constants.h"
 #include "base/error.h"
 #include "observe/table.h"
+#include "run/folder/run_3d.h"
 #include "vtk_io/figures/figure_3d.h"
 #include "vtk_io/reader.h"
 
@@ -65,6 +66,7 @@ struct Seen {
     std::map<std::string, double>
         largest;  ///< of depth, speed, cohesion, stress, effective_stress (size of any component), of
                   ///< water_depth, and of bound_depth, which is the rest
+    std::map<std::string, double> top;                ///< of the same the largest of all values
     std::vector<std::pair<double, double>> cohesion;  ///< largest at each sampled time [s], [Pa]
     Extent extent;
 };
@@ -89,6 +91,15 @@ void observe_extent(const LoadedFrame& frame, Seen& seen, bool first) {
     if (first) seen.extent.first = centre;
 }
 
+/// Takes the values of a frame that are shown. Returns what most of them do not exceed.
+double observe_array(const std::string& name, std::vector<double> values, Seen& seen) {
+    double& top = seen.top[name];
+    for (const double value : values) top = std::max(top, value);
+    const double usual = most(std::move(values));
+    seen.largest[name] = std::max(seen.largest[name], usual);
+    return usual;
+}
+
 void observe_values(const LoadedFrame& frame, Seen& seen) {
     const auto& depth = frame.nodes.at("depth");
     for (const char* name : {"depth", "speed", "stress", "effective_stress", "cohesion"}) {
@@ -99,8 +110,7 @@ void observe_values(const LoadedFrame& frame, Seen& seen) {
         for (std::size_t node = 0; node < depth.size(); ++node)
             for (std::size_t c = 0; c < components; ++c)
                 if (depth[node] > seen.thin) wet.push_back(std::abs(values[node * components + c]));
-        const double largest = most(std::move(wet));
-        seen.largest[name] = std::max(seen.largest[name], largest);
+        const double largest = observe_array(name, std::move(wet), seen);
         if (name == std::string("cohesion")) seen.cohesion.emplace_back(frame.time, largest);
     }
     if (!frame.has("water_depth")) return;
@@ -110,8 +120,8 @@ void observe_values(const LoadedFrame& frame, Seen& seen) {
         if (water[node] > seen.thin) free.push_back(water[node]);
         if (depth[node] - water[node] > seen.thin) bound.push_back(depth[node] - water[node]);
     }
-    seen.largest["water_depth"] = std::max(seen.largest["water_depth"], most(std::move(free)));
-    seen.largest["bound_depth"] = std::max(seen.largest["bound_depth"], most(std::move(bound)));
+    observe_array("water_depth", std::move(free), seen);
+    observe_array("bound_depth", std::move(bound), seen);
 }
 
 /// The time at which most is in motion.
@@ -208,14 +218,14 @@ std::string lacks_arrays(const Seen& seen, const std::vector<std::string>& names
     return "";
 }
 
-/// Whether faces of barriers can be drawn in their height; earlier versions did not say it.
-bool have_height(const fs::path& run_dir) {
+/// Whether the files of a folder have an array; earlier versions wrote fewer.
+bool have_array(const fs::path& folder, const std::string& array) {
     std::error_code none;
-    for (const fs::directory_entry& entry : fs::directory_iterator(run_dir / "barriers", none)) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, none)) {
         if (entry.path().extension() != ".vtp") continue;
         std::ifstream file(entry.path(), std::ios::binary);
         const std::string text{std::istreambuf_iterator<char>(file), {}};
-        return text.find("\"to_true_height\"") != std::string::npos;
+        return text.find('"' + array + '"') != std::string::npos;
     }
     return true;
 }
@@ -235,7 +245,7 @@ std::string missing_for(const std::string& state, const fs::path& run_dir, const
     if (state == "impact" && !fs::exists(run_dir / "barriers.pvd"))
         return "no 3D points stood before a barrier; give a [[barrier]] and a [[stage]] with model = "
                "\"mpm3d\"";
-    if (state == "impact" && !have_height(run_dir))
+    if (state == "impact" && !have_array(run_dir / "barriers", "to_true_height"))
         return "an earlier version wrote the barriers without to_true_height; run the case again";
     if (state == "stress" && lacks.empty())
         lacks = lacks_arrays(seen, {"stress", "effective_stress"},
@@ -248,30 +258,84 @@ std::string missing_for(const std::string& state, const fs::path& run_dir, const
                              "give a [water] with model = \"free\", leave output.fields at \"all\", and run again");
     if (state == "profiles" && lacks.empty() && !fs::exists(run_dir / "profiles.pvd"))
         return "there is no profiles.pvd; give a [[profile]] and run again";
+    if (state == "profiles" && lacks.empty() && !have_array(run_dir / "profiles", "initial_elevation"))
+        return "an earlier version wrote the profiles without initial_elevation; run the case again";
     if (state == "survey" && lacks.empty() && !fs::exists(run_dir / "survey_areas.vtp"))
         return "the run was not held against a survey; use frana compare, or give [survey] footprint and run again";
     return lacks;
 }
 
-/// What 99.5 % of the loaded patches do not exceed at a time [Pa].
-double most_pressure(const std::vector<LoadedPatch>& patches) {
+/// A bar's title. Where values lie beyond its end it says so: how large they get, where all of the run was looked at.
+std::string bar_title(const std::string& title, double end, double largest, bool of_all = true) {
+    if (!(largest > end)) return title;
+    return of_all ? fmt::format("{}, up to {:.3g}", title, largest) : title + ", more in places";
+}
+
+/// The largest of a column of history.csv in the steps from one time to another; 0 where it is gone.
+double largest_in_steps(const fs::path& run_dir, const char* column, double from, double until) {
+    if (!fs::exists(run_dir / "history.csv")) return 0.0;
+    const Table history = read_table(run_dir / "history.csv");
+    if (!history.has(column)) return 0.0;
+    const std::vector<double>&t = history.column("t"), &values = history.column(column);
+    double largest = 0.0;
+    for (std::size_t row = 0; row < t.size(); ++row)
+        if (t[row] >= from && t[row] <= until) largest = std::max(largest, values[row]);
+    return largest;
+}
+
+/// Titles of the bars of what frames hold. Depth and speed are known in all steps, the rest at seven
+/// outputs.
+void name_bars(const fs::path& run_dir, Seen& seen, Json& look) {
+    for (const char* name : {"depth", "speed"}) {
+        const double largest = std::max(
+            seen.top[name],
+            largest_in_steps(run_dir, name == std::string("depth") ? "max_depth" : "max_speed", 0.0, seen.last_time));
+        look["bar"][name] = bar_title(name == std::string("depth") ? "depth [m]" : "speed [m/s]",
+                                      look["range"][name][1].get<double>(), largest);
+    }
+    const std::pair<const char*, const char*> sampled[] = {{"stress", "Pa"},
+                                                           {"effective_stress", "Pa"},
+                                                           {"cohesion", "cohesion [Pa]"},
+                                                           {"water_depth", "free water [m]"},
+                                                           {"bound_depth", "particles [m]"}};
+    for (const auto& [name, title] : sampled)
+        if (look["range"].contains(name)) {
+            const Json& range = look["range"][name];
+            const double end = std::max(std::abs(range[0].get<double>()), std::abs(range[1].get<double>()));
+            look["bar"][name] = bar_title(title, end, seen.top[name], false);
+        }
+}
+
+/// What 99.5 % of the loaded patches do not exceed at a time, and the largest [Pa].
+std::pair<double, double> pressures_of(const std::vector<LoadedPatch>& patches) {
     std::vector<double> pressures;
     for (const LoadedPatch& patch : patches)
         if (patch.pressure > 0.0) pressures.push_back(patch.pressure);
-    return most(std::move(pressures));
+    const double largest = pressures.empty() ? 0.0 : *std::max_element(pressures.begin(), pressures.end());
+    return {most(std::move(pressures)), largest};
 }
 
-/// The output with points and with the largest load on a barrier, with its loads. The last such one where there is
-/// never any.
+/// Of barriers.csv, in the case's order.
+std::vector<std::string> barrier_names(const fs::path& run_dir) {
+    std::ifstream file(run_dir / "barriers.csv");
+    std::vector<std::string> names;
+    std::string line;
+    for (std::getline(file, line); std::getline(file, line);) names.push_back(line.substr(0, line.find(',')));
+    return names;
+}
+
+/// The output with points and with the largest load on a barrier that pictures tell, with its loads. The last such one
+/// where there is never any.
 Moment3d hardest_moment(const fs::path& run_dir, const Raster& bed) {
     const std::vector<double> times = barrier_times(run_dir), frames = particle_times(run_dir);
     const BarrierMeshes meshes = read_barrier_meshes(run_dir);
+    const ToldForces forces(run_dir, barrier_names(run_dir));
     Moment3d hardest;
     double most_load = -1.0;
     for (std::size_t k = 0; k < times.size(); ++k) {
         Moment3d moment;
         moment.barriers = barrier_solids(read_barriers(run_dir, static_cast<Index>(k)), {}, bed, meshes);
-        const double load = moment.most_loaded() ? moment.most_loaded()->load.head<2>().norm() : 0.0;
+        const double load = forces.load_of(moment, times[k]);
         const auto frame = std::find(frames.begin(), frames.end(), times[k]);
         if (frame == frames.end() || load < most_load) continue;
         moment = moment_3d(read_particles(run_dir, frame - frames.begin()), moment.barriers);
@@ -313,10 +377,16 @@ void look_at_impact(const fs::path& run_dir, Json& look) {
     look["impact_time"] = figure.moment.time;
     look["point_radius"] = 0.62 * figure.moment.typical_size;
     look["range"]["point_speed"] = {0.0, round_up(figure.view.fastest)};
-    double pressure = 0.0;  // as the patches have it, which ParaView shows
-    for (Index k = 0; k < static_cast<Index>(barrier_times(run_dir).size()); ++k)
-        pressure = std::max(pressure, most_pressure(read_barriers(run_dir, k)));
+    const std::vector<double> times = barrier_times(run_dir);
+    double pressure = 0.0, largest = 0.0;  // as the patches have it, which ParaView shows
+    for (Index k = 0; k < static_cast<Index>(times.size()); ++k) {
+        const auto [usual, top] = pressures_of(read_barriers(run_dir, k));
+        pressure = std::max(pressure, usual), largest = std::max(largest, top);
+    }
     look["range"]["pressure"] = {0.0, round_up(pressure)};
+    look["bar"]["pressure"] = bar_title("pressure [Pa]", round_up(pressure), largest);
+    look["bar"]["point_speed"] = bar_title("speed [m/s]", round_up(figure.view.fastest),
+                                           largest_in_steps(run_dir, "max_speed", times.front(), times.back()));
     look["camera"]["impact"] = camera(position, focal, {0.0, 0.0, 1.0}, reach, reach);
 }
 
@@ -345,15 +415,19 @@ int free_corner(const std::vector<double>& elevation, double lowest, double high
     return static_cast<int>(std::max_element(room.begin(), room.end()) - room.begin());
 }
 
-/// The chart of the profile: formulas of what is drawn, its title, and where its legend stands.
+/// The chart of the profile: formulas of what is drawn, its title, and where its legend stands. All surfaces are drawn
+/// from the bed at the start, which stays, so that a deposit is as thick whether it still flows or has become bed.
 void look_at_profile(const fs::path& run_dir, Json& look) {
     ProfileShape shape = profile_shape(run_dir);
     if (shape.elevation.empty()) shape.elevation = {0.0};
     const auto [lowest, highest] = std::minmax_element(shape.elevation.begin(), shape.elevation.end());
     const int times = times_deeper(*highest - *lowest, shape.deepest);
     look["legend"] = free_corner(shape.elevation, *lowest, *highest);
-    look["profile"] = {{"surface", fmt::format("elevation+{}*depth", times)},
-                       {"initial_surface", fmt::format("elevation+{}*(initial_surface-elevation)", times)},
+    const auto drawn = [&](const char* surface) {
+        return fmt::format("initial_elevation+{}*({}-initial_elevation)", times, surface);
+    };
+    look["profile"] = {{"surface", drawn("surface")},
+                       {"initial_surface", drawn("initial_surface")},
                        {"title", times == 1 ? "Surfaces along the line"
                                             : fmt::format("Surfaces along the line, depths times {}", times)}};
 }
@@ -441,6 +515,7 @@ Json look_at_run(const fs::path& run_dir, const std::string& title) {
         for (const char* name : {"water_depth", "bound_depth"})
             look["range"][name] = {0.0, round_up(seen.largest[name])};
     look["range"]["effective_stress"] = {-round_up(seen.largest["effective_stress"]), 0.0};
+    name_bars(run_dir, seen, look);
     // Some 400 crosses on the flow, since a narrow one has no room for wide distances. But they must be large enough to
     // see when all that was ever covered is in view.
     const double across = std::max(seen.extent.xmax - seen.extent.xmin, seen.extent.ymax - seen.extent.ymin);

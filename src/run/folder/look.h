@@ -14,12 +14,13 @@ namespace frana {
 ///   potential_from_start (a formula for history.csv's rows) [J],
 ///   range: {depth, speed, stress, effective_stress: [low, high]}, of two phases water_depth and
 ///   bound_depth, round numbers that hold 99.5 % of the wet nodes,
+///   bar: titles of the same, which say so where values lie beyond the range,
 ///   cross: {stride, scale [m/Pa], extent} of the principal stresses, legend: corner of the profile's chart, profile:
 ///   {surface, initial_surface: formulas of what the chart shows, title}, cohesion_text: what is said of a structure,
 ///   camera: {view: seen up the slope, map: from above, survey: from above, with what was surveyed}: {position, focal,
 ///   up, angle [degree], scale, scale_wide, scale_tall, scale_row [m]}, all over everything ever covered; scale is half
 ///   the height of a square view, the others those of a 3:2, of a 3:5 and of a 1:2 one,
-///   impact_time (the output with the largest load on a barrier), point_radius [m], range.point_speed, range.pressure
+///   impact_time (the output with the largest load on a barrier that pictures tell), point_radius [m], range.point_speed, range.pressure
 ///   [Pa], camera.impact (from the side of the flow): of a run with 3D points and barriers,
 ///   states: {name: ""} for each state the run has the files for, or the sentence that says what it lacks.
 /// Throws UserError when a file that is there cannot be read.

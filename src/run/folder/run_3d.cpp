@@ -17,6 +17,12 @@ namespace frana {
 namespace fs = std::filesystem;
 namespace {
 
+std::vector<std::string> names_of(const std::vector<Barrier>& barriers) {
+    std::vector<std::string> names;
+    for (const Barrier& barrier : barriers) names.push_back(barrier.name);
+    return names;
+}
+
 /// The outputs of a run that has 3D points.
 class Run3d {
 public:
@@ -24,7 +30,8 @@ public:
         : source_(source),
           times_(particle_times(source.run_dir)),
           loads_(barrier_times(source.run_dir)),
-          meshes_(read_barrier_meshes(source.run_dir)) {
+          meshes_(read_barrier_meshes(source.run_dir)),
+          forces_(source.run_dir, names_of(source.barriers)) {
         if (!times_.empty()) named_ = read_particles(source.run_dir, -1).arrays.count("model") > 0;
     }
 
@@ -54,17 +61,16 @@ public:
         return moment(middle).typical_size > 0.0 ? middle : last;
     }
 
-    /// The output with points and with the largest horizontal load on one barrier; nothing without any.
+    /// The output with points and with the largest horizontal load on one barrier, as told; nothing without any.
     std::optional<Index> hardest() const {
         double most = 0.0;
         std::optional<Index> number;
         for (const double time : loads_) {
             Moment3d loaded;
             loaded.barriers = barriers(time);
-            const BarrierSolid* barrier = loaded.most_loaded();
-            if (!barrier || barrier->load.head<2>().norm() <= most) continue;
-            if (moment(nearest(time)).typical_size <= 0.0) continue;
-            most = barrier->load.head<2>().norm();
+            const double load = forces_.load_of(loaded, time);
+            if (load <= most || moment(nearest(time)).typical_size <= 0.0) continue;
+            most = load;
             number = nearest(time);
         }
         return number;
@@ -103,22 +109,11 @@ private:
         std::string text = fmt::format("pressure on {}, seen along its load", name);
         const auto over = source_.mean_over.find(name);
         if (over == source_.mean_over.end()) return text;
-        try {
-            const Table table = read_table(source_.run_dir / "barriers" / (name + ".csv"));
-            const std::vector<double>& t = table.column("t");
-            constexpr double kDigits = 1e-9;  // texts of a time differ in their last digits
-            const auto row = std::find_if(t.begin(), t.end(), [&](double known) {
-                return std::abs(known - time) <= kDigits * std::max(1.0, time);
-            });
-            if (row == t.end()) return text;
-            const double force = 1e-3 * table.column("mean_force")[static_cast<std::size_t>(row - t.begin())];
-            if (!std::isfinite(force)) return text;
-            return fmt::format("{}; force {} kN, mean over {:.3g} s", text,
-                               force < 10.0 ? fmt::format("{:.2g}", force) : fmt::format("{:.0f}", force),
-                               over->second);
-        } catch (const UserError&) {  // more barriers than have tables
-            return text;
-        }
+        const std::optional<double> force = forces_.at(barrier, time);
+        if (!force) return text;
+        const double kn = 1e-3 * *force;
+        return fmt::format("{}; force {} kN, mean over {:.3g} s", text,
+                           kn < 10.0 ? fmt::format("{:.2g}", kn) : fmt::format("{:.0f}", kn), over->second);
     }
 
     /// At that time; before the first loads, and between, the faces that are known without any.
@@ -135,6 +130,7 @@ private:
     const FigureSource& source_;
     std::vector<double> times_, loads_;
     BarrierMeshes meshes_;
+    ToldForces forces_;
     bool named_ = false;  ///< the last frame says which are points; then frames that do not have particles only
 };
 
@@ -183,6 +179,37 @@ void add_some(const Moment3d& moment, std::vector<Vec3>& places) {
 }
 
 }  // namespace
+
+const Table* ToldForces::table_of(std::size_t barrier) const {
+    if (barrier >= names_.size()) return nullptr;
+    const auto [entry, is_new] = tables_.try_emplace(barrier);
+    std::optional<Table>& table = entry->second;
+    if (is_new) try {
+            table = read_table(run_dir_ / "barriers" / (names_[barrier] + ".csv"));
+            if (!table->has("mean_force")) table.reset();
+        } catch (const UserError&) {  // more barriers than have tables
+            table.reset();
+        }
+    return table ? &*table : nullptr;
+}
+
+std::optional<double> ToldForces::at(std::size_t barrier, double time) const {
+    const Table* const table = table_of(barrier);
+    if (!table) return {};
+    const std::vector<double>& t = table->column("t");
+    const double near = 1e-9 * std::max(1.0, time);  // texts of a time differ in their last digits
+    const auto row = std::lower_bound(t.begin(), t.end(), time - near);
+    if (row == t.end() || std::abs(*row - time) > near) return {};
+    const double force = table->column("mean_force")[static_cast<std::size_t>(row - t.begin())];
+    return std::isfinite(force) ? std::optional<double>(force) : std::nullopt;
+}
+
+double ToldForces::load_of(const Moment3d& moment, double time) const {
+    const BarrierSolid* const barrier = moment.most_loaded();
+    if (!barrier) return 0.0;
+    const auto number = static_cast<std::size_t>(barrier->number);
+    return table_of(number) ? at(number, time).value_or(0.0) : barrier->load.head<2>().norm();
+}
 
 void add_3d(const FigureSource& source, Gallery& gallery) {
     if (!has_points(source)) return;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -144,14 +145,62 @@ std::optional<PageDrape> drape_of(const FigureSource& source, const DrapeRule& r
     return drape;
 }
 
-/// What has become bed at a time, straight between frames [m3].
-double lying_at(const std::vector<PackedFrame>& frames, double time) {
-    const auto after = std::find_if(frames.begin(), frames.end(), [&](const PackedFrame& f) { return f.time >= time; });
-    if (after == frames.end()) return frames.empty() ? 0.0 : frames.back().lying;
-    if (after == frames.begin()) return after->lying;
-    const PackedFrame& before = *(after - 1);
-    return before.lying + (after->lying - before.lying) * (time - before.time) / (after->time - before.time);
-}
+/// What lies as bed in the rows of history.csv [m3]: all that came to lie up to then, which rows have, but for what the
+/// flow has taken up again of it. Of that frames tell how much it is. A frame may lie between two rows, of which the
+/// later has much more come to lie; what was taken up again only ever grows.
+class LyingBed {
+public:
+    LyingBed(const std::vector<PackedFrame>& frames, const Table& history, double density)
+        : frames_(frames),
+          time_(history.column("t")),
+          came_(history.column("deposited_mass")),
+          taken_(history.column("eroded_mass")),
+          density_(density) {
+        if (time_.empty()) return;
+        std::vector<double> least, most;  // by the rows around each frame
+        for (const PackedFrame& frame : frames) {
+            const std::size_t row = row_at(frame.time), next = std::min(row + 1, time_.size() - 1);
+            least.push_back(came_[row] / density - frame.lying);
+            most.push_back(came_[time_[row] == frame.time ? row : next] / density - frame.lying);
+        }
+        again_ = most;
+        double bound = 0.0;
+        for (std::size_t k = 0; k < again_.size(); ++k)
+            again_[k] = bound = std::min(std::max(bound, least[k]), most[k]);
+        bound = std::numeric_limits<double>::infinity();
+        for (std::size_t k = again_.size(); k-- > 0;) {
+            bound = std::max(std::min(bound, most[k]), least[k]);
+            again_[k] = 0.5 * (again_[k] + bound);
+        }
+    }
+
+    double at_row(std::size_t row) const { return frames_.empty() ? 0.0 : came_[row] / density_ - again_at(row); }
+
+private:
+    /// The last one that is not later.
+    std::size_t row_at(double time) const {
+        const auto after = std::upper_bound(time_.begin(), time_.end(), time);
+        return after == time_.begin() ? 0 : static_cast<std::size_t>(after - time_.begin()) - 1;
+    }
+    /// What was taken up again goes between frames as the flow takes of its bed [m3].
+    double again_at(std::size_t row) const {
+        const auto later = [](double time, const PackedFrame& frame) { return time < frame.time; };
+        const auto next = std::upper_bound(frames_.begin(), frames_.end(), time_[row], later);
+        const auto k = static_cast<std::size_t>(next - frames_.begin());
+        if (k == 0 || next == frames_.end()) return k == 0 ? again_.front() : again_.back();
+        const std::size_t from = row_at(frames_[k - 1].time), until = row_at(frames_[k].time);
+        const double taken = taken_[until] - taken_[from], span = time_[until] - time_[from];
+        const double share = taken > 0.0  ? (taken_[row] - taken_[from]) / taken
+                             : span > 0.0 ? (time_[row] - time_[from]) / span
+                                          : 0.0;
+        return again_[k - 1] + share * (again_[k] - again_[k - 1]);
+    }
+
+    const std::vector<PackedFrame>& frames_;
+    const std::vector<double>&time_, &came_, &taken_;
+    double density_;
+    std::vector<double> again_;  ///< taken up again until each frame [m3]
+};
 
 /// Of history.csv; none where it is gone. The volume is that of the depth on show: what has become bed counts.
 PageCurves curves_of(const FigureSource& source, const FlowFrames& frames, const RecordJson& record,
@@ -167,8 +216,9 @@ PageCurves curves_of(const FigureSource& source, const FlowFrames& frames, const
         curves.time = history.column("t"), curves.runout = history.column("front"),
         curves.volume = history.column("mass");
         const double density = density_of(source, record);
+        const LyingBed bed(frames.frames(), history, density);
         for (std::size_t k = 0; k < curves.volume.size(); ++k)
-            curves.volume[k] = curves.volume[k] / density + lying_at(frames.frames(), curves.time[k]);
+            curves.volume[k] = curves.volume[k] / density + bed.at_row(k);
     } catch (const UserError& error) {
         warnings.push_back(fmt::format("{} shows no curves: {}", kPage, error.what()));
     }
