@@ -72,6 +72,22 @@ TEST_CASE("A run of a block conserves mass and momentum, and loses energy to wha
     for (const double share : breakage->pieces) CHECK((share > 0.0 && share <= 1.0));
 }
 
+// Their impulse began with the momentum that was there: in a flume it was 30 kg m/s at rest's first moment.
+TEST_CASE("The impulse of a structured run begins at zero and is what momentum changed by", "[structured][mixture]") {
+    const bool wet = GENERATE(false, true);
+    Scene scene = sliding(600.0);
+    if (wet) scene.water.emplace();
+    const std::unique_ptr<Simulation> run = make_simulation(scene);
+    const Status first = run->status();
+    CHECK(first.momentum[0] > first.mass);  // 2 m/s, of solids
+    CHECK(std::abs(first.impulse[0]) + std::abs(first.impulse[1]) == 0.0);
+    go_to(*run, 0.5);
+    const Status& now = run->status();
+    for (const std::size_t axis : {0, 1})
+        CHECK(now.momentum[axis] + now.momentum_left[axis] - first.momentum[axis] ==
+              Approx(now.impulse[axis]).margin(1e-10 * first.momentum[0]));
+}
+
 TEST_CASE("What elastic waves cost is the depth-averaged flow's step over theirs", "[structured]") {
     Scene scene = sliding();
     StructuredRun whole(scene);
