@@ -268,37 +268,81 @@ void add_states(CLI::App& app, StatesOptions& options, Action& action) {
         [&] { action = [&] { return adding_to(options.run_dir, [&] { return states_command(options); }); }; });
 }
 
+/// An option without effect beside another one is refused with it.
+void exclude_all_but(CLI::App& command, CLI::Option* chosen, const std::vector<std::string>& kept) {
+    for (CLI::Option* other : command.get_options()) {
+        const std::string name = other->get_name();
+        if (other == chosen || name == "--help" || std::find(kept.begin(), kept.end(), name) != kept.end()) continue;
+        chosen->excludes(other);
+    }
+}
+
+/// What is found after the work would be lost with it: the folder of a file to write has to be there before.
+CLI::Option* in_folder(CLI::Option* option) {
+    return option->check(CLI::Validator(
+        [option](std::string& file) -> std::string {
+            const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+            std::error_code none;
+            if (std::filesystem::is_directory(folder, none)) return "";
+            throw UserError(fmt::format("{} {}: found no folder {}; expected one to write into; make it first",
+                                        option->get_name(), file, folder.string()));
+        },
+        ""));
+}
+
 void add_verify(CLI::App& app, VerifyOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("verify", "problems with exact answers: errors, order, run time");
     command->add_option("NAME", options.names, "problems; default all");
-    command->add_flag("--list", options.list, "list the problems");
+    CLI::Option* list = command->add_flag("--list", options.list, "list the problems");
     command->add_option("--cells", options.cells, "grids: N,N,...")->delimiter(',')->check(CLI::Range(4, 100000));
     command->add_flag("--coarse", options.coarse, "leave out grids that take half a minute or more");
     command
         ->add_option("--preset", options.preset,
                      "default, fast, paper, or float: the default with scheme.precision = \"float\"")
         ->check(CLI::IsMember({"default", "fast", "paper", "float"}));
-    command->add_option("--points", options.per_cell, "points a cell")->check(CLI::IsMember({1, 4, 9, 16}));
+    command
+        ->add_option("--points", options.per_cell,
+                     "points a cell: 1, 4, 9 or 16 on the plane, 1, 8, 27 or 64 in 3D; without NAME of those problems "
+                     "that have so many")
+        ->check(CLI::IsMember({1, 4, 8, 9, 16, 27, 64}));
     command->add_option("--threads", options.threads, "threads; default OMP_NUM_THREADS")->check(CLI::Range(1, 4096));
-    command->add_option("--json", options.json, "write the results as JSON");
-    command->add_option("--table", options.table, "write the table as text, without times");
+    in_folder(command->add_option("--json", options.json, "write the results as JSON"));
+    in_folder(command->add_option("--table", options.table, "write the table as text, without times"));
     command->add_option("--against", options.against, "compare with a table written before: fails where one differs")
         ->check(CLI::ExistingFile);
-    command->add_option(
+    CLI::Option* figure = in_folder(command->add_option(
         "--figure", options.figure,
         "draw error over run time beside other codes; of clay_flume, blocks_2, blocks_3: how their blocks "
-        "end (PNG)");
-    command->add_flag("--study", options.study, "change one component of the scheme at a time");
+        "end (PNG)"));
+    CLI::Option* study = command->add_flag("--study", options.study, "change one component of the scheme at a time");
+    exclude_all_but(*command, list, {});
+    exclude_all_but(*command, figure, {"NAME", "--threads"});
+    exclude_all_but(*command, study, {"--table", "--threads"});
     command->callback([&] { action = [&] { return verify_command(options); }; });
 }
 
 void add_bench(CLI::App& app, BenchOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("bench", "cost of a step by phase, beside the machine's own speed");
-    command->add_option("--json", options.json, "write the results as JSON");
+    in_folder(command->add_option("--json", options.json, "write the results as JSON"));
     command->add_option("--particles", options.particles, "N,N,...; default 70000,500000,4000000")->delimiter(',');
     command->add_option("--threads", options.threads, "N,N,...; default 1,2")->delimiter(',');
     command->add_flag("--quick", options.quick, "fewer rounds, no more than 500000 particles, no wide grid");
     command->callback([&] { action = [&] { return bench_command(options); }; });
+}
+
+/// A case under watch in place of random scenes: their options say nothing of it, nor its own of them.
+void add_watched_case(CLI::App& command, FuzzOptions& options) {
+    CLI::Option* watched = command.add_option("--case", options.case_file, "watch this case instead");
+    exclude_all_but(command, watched, {});
+    const std::vector<CLI::Option*> of_it{
+        numeric(command.add_option("--steps", options.steps, "of that case; default 100"), kAboveZero),
+        command.add_flag("--rests", options.rests, "nothing in that case may move"),
+        command.add_option("--mirror", options.mirror, "that case is its own mirror image: x, y or diagonal"),
+        command.add_flag("--same-threads", options.same_threads,
+                         "one thread and two must give that case the same bits"),
+        command.add_flag("--same-resumed", options.same_resumed,
+                         "saved half way and resumed it must end with the same bits")};
+    for (CLI::Option* option : of_it) option->needs(watched);
 }
 
 void add_fuzz(CLI::App& app, FuzzOptions& options, Action& action) {
@@ -315,19 +359,15 @@ void add_fuzz(CLI::App& app, FuzzOptions& options, Action& action) {
             kFromZero);
     numeric(command->add_option("--shrunk", options.shrunk, "failures that are shrunk and saved; default 20"),
             kFromZero);
-    command->add_option("--json", options.json, "write the results as JSON");
+    in_folder(command->add_option("--json", options.json, "write the results as JSON"));
     command->add_option("--out", options.out, "folder for cases of failing scenes; default out/stress");
     command->add_option("--known", options.known,
                         "list of known failures (SEED MODEL SCENE INVARIANT): only others count");
-    command->add_flag("--cfl-map", options.cfl_map, "find the largest stable scheme.cfl of each scheme instead");
-    command->add_option("--figure", options.figure, "draw that map (PNG)");
-    command->add_option("--case", options.case_file, "watch this case instead");
-    numeric(command->add_option("--steps", options.steps, "of that case; default 100"), kAboveZero);
-    command->add_flag("--rests", options.rests, "nothing in that case may move");
-    command->add_option("--mirror", options.mirror, "that case is its own mirror image: x, y or diagonal");
-    command->add_flag("--same-threads", options.same_threads, "one thread and two must give that case the same bits");
-    command->add_flag("--same-resumed", options.same_resumed,
-                      "saved half way and resumed it must end with the same bits");
+    CLI::Option* cfl_map =
+        command->add_flag("--cfl-map", options.cfl_map, "find the largest stable scheme.cfl of each scheme instead");
+    exclude_all_but(*command, cfl_map, {});
+    in_folder(command->add_option("--figure", options.figure, "draw that map (PNG)"))->needs(cfl_map);
+    add_watched_case(*command, options);
     command->callback([&] { action = [&] { return fuzz_command(options); }; });
 }
 

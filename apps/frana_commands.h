@@ -127,7 +127,7 @@ struct VerifyOptions {
     bool coarse = false;           ///< finest grids that take long are left out
     std::vector<long long> cells;  ///< empty: each problem's own grids
     std::string preset = "default";
-    int per_cell = 4;  ///< points a cell: 1, 4, 9 or 16
+    int per_cell = 0;  ///< points a cell: a square, of 3D problems a cube; 0: 2 a direction
     int threads = 0;
     std::filesystem::path json, table;  ///< files to write, or empty
     std::filesystem::path against;      ///< table to compare with, or empty

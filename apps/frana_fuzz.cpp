@@ -79,8 +79,7 @@ std::set<std::string> known_failures(const std::filesystem::path& file) {
 }
 
 /// Failures that the list of known ones does not hold; says of known ones when they are mended.
-Index new_failures(const fuzz::Campaign& campaign, const FuzzOptions& options) {
-    std::set<std::string> known = known_failures(options.known);
+Index new_failures(const fuzz::Campaign& campaign, std::set<std::string> known, const FuzzOptions& options) {
     Index found = 0;
     for (const fuzz::Failure& failure : campaign.failures)
         if (known.erase(fmt::format("{} {} {} {}", options.seed, word_of(failure.model), failure.n,
@@ -111,13 +110,14 @@ int fuzz_command(const FuzzOptions& options) {
     plan.scenes = options.scenes;
     plan.seconds = options.seconds;
     plan.most_shrunk = options.shrunk;
+    const std::set<std::string> known = known_failures(options.known);  // before the work: it may be no file
     const Interrupt interrupt(Interrupt::Listen::signals);
     const fuzz::Campaign campaign = run(
         plan, [&](const fuzz::Failure& failure) { report(failure, options); }, [&] { return interrupt.requested(); });
     fmt::print("{}", table_of(campaign));
     if (!options.json.empty()) write_text(options.json, json_of(campaign));
     if (interrupt.requested()) throw Interrupted("interrupted; the scenes so far are above");
-    return new_failures(campaign, options) == 0 && campaign.refused == 0 ? 0 : 1;
+    return new_failures(campaign, known, options) == 0 && campaign.refused == 0 ? 0 : 1;
 }
 
 }  // namespace frana

@@ -43,6 +43,22 @@ std::vector<const Problem*> chosen(const std::vector<std::string>& names) {
     return problems;
 }
 
+/// Points a cell and direction; 0 where a problem cannot have so many points a cell.
+int points_per_side(const Problem& problem, int per_cell) {
+    const double root = problem.in_3d ? std::cbrt(per_cell) : std::sqrt(per_cell);
+    const int per_side = static_cast<int>(std::lround(root));
+    return per_cell == (problem.in_3d ? per_side * per_side * per_side : per_side * per_side) ? per_side : 0;
+}
+
+/// Named problems that cannot have the points a cell that were asked for are refused before any of them runs.
+void require_points(const std::vector<const Problem*>& problems, const VerifyOptions& options) {
+    if (options.names.empty() || options.per_cell == 0) return;
+    for (const Problem* problem : problems)
+        if (points_per_side(*problem, options.per_cell) == 0)
+            throw UserError(fmt::format("--points: found {}; expected {} for {}; choose one of them", options.per_cell,
+                                        problem->in_3d ? "1, 8, 27 or 64" : "1, 4, 9 or 16", problem->name));
+}
+
 void print_list() {
     for (const Problem& problem : verify::library())
         fmt::print("{:18} {}{}\n", problem.name, problem.title, problem.takes_minutes ? " (minutes; when named)" : "");
@@ -151,9 +167,9 @@ int verify_command(const VerifyOptions& given) {
         draw_work_precision(options.names.empty() ? std::vector<const Problem*>{} : problems, options.figure);
         return 0;
     }
+    require_points(problems, options);
     verify::Setup setup;
     setup.preset = options.preset;
-    setup.per_side = static_cast<int>(std::lround(std::sqrt(options.per_cell)));
     const std::vector<Index> grids(options.cells.begin(), options.cells.end());
     const std::string head = verify::table_head();
     std::string table = fmt::format("# frana {} {}, {}\n{}\n", FRANA_VERSION, FRANA_COMMIT, today(), head);
@@ -162,6 +178,8 @@ int verify_command(const VerifyOptions& given) {
     fmt::print("{}\n", head);
     for (const Problem* problem : problems) {
         if (problem->takes_minutes && options.names.empty()) continue;
+        if (options.per_cell > 0) setup.per_side = points_per_side(*problem, options.per_cell);
+        if (setup.per_side == 0) continue;
         if ((problem->in_3d || !problem->has_presets) && options.names.empty() && options.preset != "default") continue;
         const auto measured = run_problem(
             *problem, setup, grids.empty() ? verify::grids_of(*problem, options.coarse) : grids, table, complaints);

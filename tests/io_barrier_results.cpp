@@ -320,6 +320,33 @@ TEST_CASE("A house is not hit by a flow two cells beside it with a film between"
     CHECK(hit_on(house, rasters).depth == 6.0);
 }
 
+// Points reach up to the face. Pixels with their middle on it had no side, and in cases/wall the deepest of all is one.
+TEST_CASE("Depth on a face itself is that of its side, and the largest side has the largest depth",
+          "[barriers][results]") {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const GridGeometry grid{40, 20, 0.0, 0.0, 5.0};
+    std::vector<ProductRaster> rasters;
+    for (const char* name : {"peak_depth", "peak_dynamic_pressure", "arrival_time"})
+        rasters.push_back({name, "", "", Raster::filled(grid, kNone)});
+    for (Index j = 0; j < grid.ny; ++j)
+        for (Index i = 0; i <= 20; ++i)  // up to the face at x = 100 m, and deeper towards it
+            rasters[0].raster.at(i, j) = 0.1 * static_cast<double>(i), rasters[1].raster.at(i, j) = 1e3,
+                                    rasters[2].raster.at(i, j) = 1.0;
+    Polygons wall;
+    const bool turned = GENERATE(false, true);
+    wall.parts = {Polygon{{{{100, -10}, {110, -10}, {110, 110}, {100, 110}, {100, -10}}}}};
+    if (turned) std::reverse(wall.parts[0].rings[0].begin(), wall.parts[0].rings[0].end());
+    const BarrierHit on_face = hit_on(wall, rasters);
+    CHECK(on_face.depth == Approx(2.0));
+    CHECK(on_face.side_depth[3] == on_face.depth);
+    for (Index j = 0; j < grid.ny; ++j) rasters[0].raster.at(21, j) = 2.5, rasters[2].raster.at(21, j) = 1.0;
+    CHECK(hit_on(wall, rasters).side_depth[3] == 2.5);  // in the wall, as near to both: to the east as well
+    CHECK(hit_on(wall, rasters).side_depth[1] == 2.5);
+    CHECK(std::isnan(on_face.side_depth[0]));
+    CHECK(std::isnan(on_face.side_depth[1]));
+    CHECK(std::isnan(on_face.side_depth[2]));
+}
+
 TEST_CASE("A force on a barrier has the time that it is the mean over, wherever it is told", "[barriers][results]") {
     const FreshFolder folder;
     BarrierSummary dam, none;

@@ -287,6 +287,37 @@ TEST_CASE("verify names the problem that was meant, writes JSON with the contrac
     CHECK(scene.frana("verify stoker --cells 50,120 --against v.txt").code == 1);
 }
 
+// They were taken and had no effect, or were found wrong when all had run.
+TEST_CASE("Options of verify and stress without effect are refused before the work, and files that cannot be",
+          "[cli]") {
+    const PlaneCase scene;
+    const auto refused = [&](const std::string& arguments, const std::string& part) {
+        CAPTURE(arguments);
+        const Outcome outcome = scene.frana(arguments);
+        CHECK(outcome.code == 2);
+        CHECK(outcome.out.empty());
+        CHECK_THAT(outcome.err, Contains(part));
+        CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+    };
+    refused("stress --case CASE --json s.json", "excludes");
+    refused("stress --case CASE --seed 2", "excludes");
+    refused("stress --scenes 1 --mirror y", "--mirror requires --case");
+    refused("stress --scenes 1 --steps 10", "--steps requires --case");
+    refused("stress --scenes 1 --figure cfl.png", "--figure requires --cfl-map");
+    refused("stress --cfl-map --scenes 1", "excludes");
+    refused("stress --scenes 1 --known nowhere.txt", "nowhere.txt: cannot be read; expected lines of SEED MODEL SCENE");
+    refused("stress --scenes 1 --json nowhere/s.json", "--json nowhere/s.json: found no folder");
+    refused("verify ritter --cells 50 --figure x.png", "excludes");
+    refused("verify --study --json v.json", "excludes");
+    refused("verify --list --cells 50", "excludes");
+    refused("verify tank --points 9", "--points: found 9; expected 1, 8, 27 or 64 for tank; choose one of them");
+    refused("verify ritter --points 8", "--points: found 8; expected 1, 4, 9 or 16 for ritter; choose one of them");
+    refused("verify ritter --cells 50 --json nowhere/v.json", "--json nowhere/v.json: found no folder");
+    const Outcome fewer = scene.frana("verify ritter --cells 50 --points 1 --json v.json");
+    CHECK(fewer.code != 2);
+    CHECK(nlohmann::json::parse(text_of(scene.folder() / "v.json")).at(0)["cells"] == 50);
+}
+
 TEST_CASE("bench leaves with 2 and a sentence for numbers that cannot be", "[cli]") {
     const PlaneCase scene;
     const Outcome few = scene.frana("bench --particles 70000,5 --json b.json");

@@ -12,6 +12,7 @@
 #include "base/free_memory.h"
 #include "catch.h"
 #include "io_gdal_make.h"
+#include "plane_case.h"
 #include "program.h"
 
 namespace fs = std::filesystem;
@@ -132,6 +133,21 @@ TEST_CASE("A run on a large terrain takes memory by what the flow reaches", "[te
     CHECK(check.code == 0);
     CHECK_THAT(check.out, Contains("6000 x 6000 nodes, 5 m apart") && Contains("around the releases to begin with") &&
                               Contains("ready to run"));
+}
+
+// With pictures it was told to take up to half more than it does.
+TEST_CASE("A run takes the memory that check predicts, with pictures and without", "[memory][figures]") {
+    const PlaneCase scene;
+    const std::string formats = GENERATE("[\"vtk\",\"geotiff\"]", "[\"vtk\",\"geotiff\",\"png\"]");
+    scene.write("[output]\nformats = " + formats + "\n");
+    const Outcome check = scene.frana("check CASE");
+    const std::string before = "memory      about ";
+    const std::size_t at = check.out.find(before);
+    REQUIRE(at != std::string::npos);
+    const double told = 1e6 * std::stod(check.out.substr(at + before.size()));
+    const double taken = peak_memory(scene.folder(), {"run", "case.toml", "--quiet", "--out", "taken"});
+    CAPTURE(formats, told, taken);
+    CHECK(told == Approx(taken).epsilon(0.2));  // apps/README.md
 }
 
 TEST_CASE("A run on a large terrain has the bits of a run on a window of it", "[terrain]") {

@@ -48,10 +48,15 @@ bool crosses(const Surface& barrier, const Raster& ground, const std::pair<Vec3,
 bool at_crest(const Surface& barrier, const Vec2& place, double cell) {
     if (!barrier.shape) return true;
     const double here = top_of(barrier, place);
-    const auto top = [&](const Vec2& x) {
-        const double z = top_of(barrier, x);
-        return std::isfinite(z) ? z : here;
-    };
+    return at_crest(
+        [&](const Vec2& x) {
+            const double z = top_of(barrier, x);
+            return std::isfinite(z) ? z : here;
+        },
+        place, cell);
+}
+
+bool at_crest(const std::function<double(const Vec2&)>& top, const Vec2& place, double cell) {
     const Vec2 x(0.25 * cell, 0.0), y(0.0, 0.25 * cell),
         rise(top(place + x) - top(place - x), top(place + y) - top(place - y));
     // Of a cell, over half of one: what sampling makes of a level crest. Along an axis a crest may rise by 1 in 5

@@ -1,5 +1,6 @@
 #pragma once
 // Where a place lies with respect to a barrier: near it, on its crest, on the other side. Watches of both models ask.
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -30,5 +31,7 @@ bool crosses(const Surface& barrier, const Raster& ground, const std::pair<Vec3,
 /// Whether a place on a barrier is at its crest. What stands on a mesh's sloping face is not yet over it: half a cell
 /// up from there the face still rises. What goes over moves less than a cell between two samples.
 bool at_crest(const Surface& barrier, const Vec2& place, double cell);
+/// The same by elevations `top`, of the ground that barriers raise.
+bool at_crest(const std::function<double(const Vec2&)>& top, const Vec2& place, double cell);
 
 }  // namespace frana

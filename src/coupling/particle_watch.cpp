@@ -106,35 +106,65 @@ void ParticleWatch::make_room(std::size_t id) {
     if (last_.size() < 2 * (id + 1)) last_.resize(2 * (id + 1), 0.0);
 }
 
-void ParticleWatch::sample(const ParticleAt& particle) {
+void ParticleWatch::sample(const DepthAveraged& particles, const ParticleAt& particle) {
     const auto [first, end] = tiles_.barriers_at(particle.place);
     if (first == end) return;
     const auto id = static_cast<std::size_t>(particle.id);
     make_room(id);
     const Vec2 from(last_[2 * id], last_[2 * id + 1]);
     const bool came = near_[id] > 0 && near_[id] == round_ - 1;
+    bool on_its_way = false;
     for (const Index* n = first; n != end; ++n)
-        sample_at(static_cast<std::size_t>(*n), particle, came ? &from : nullptr);
+        on_its_way = sample_at(static_cast<std::size_t>(*n), particles, particle, came ? &from : nullptr) || on_its_way;
     near_[id] = round_;
+    if (on_its_way) return;  // its way goes on from where it was outside
     for (std::size_t axis = 0; axis < 2; ++axis) last_[2 * id + axis] = particle.place[static_cast<Eigen::Index>(axis)];
 }
 
-void ParticleWatch::sample_at(std::size_t n, const ParticleAt& particle, const Vec2* from) {
+bool ParticleWatch::on_crest(std::size_t n, const DepthAveraged& particles, const Vec2& place) const {
+    if (surfaces_[n].shape) return at_crest(surfaces_[n], place, cell_);
+    const Sample here = particles.at(place);
+    if (here.elevation + here.depth >= top_of(surfaces_[n], place)) return true;
+    const auto bed = [&](const Vec2& x) { return particles.at(x).elevation; };
+    if (at_crest(bed, place, cell_)) return true;
+    const auto below_top = [&](const Vec2& x) {  // a crest may itself rise, as the ground does
+        const double top = top_of(surfaces_[n], x);
+        return bed(x) - (std::isfinite(top) ? top : top_of(surfaces_[n], place));
+    };
+    return at_crest(below_top, place, cell_);
+}
+
+bool ParticleWatch::goes_over(std::size_t n, const DepthAveraged& particles, const Vec2& from, const Vec2& to) const {
+    if (!crosses(surfaces_[n], ground_[n], boxes_[n], from, to)) return false;
+    if (surfaces_[n].shape) return true;
+    const double z = boxes_[n].second.z() - 1e6;  // as crosses() has it
+    const Vec3 a(from.x(), from.y(), z), b(to.x(), to.y(), z);
+    Entry in, out;
+    if (!enters(surfaces_[n], a, b, in) || !enters(surfaces_[n], b, a, out)) return true;
+    if (in.normal.dot(out.normal) < -0.5) return true;  // in at one side, out at the other
+    return on_crest(n, particles, from + 0.5 * (in.share + 1.0 - out.share) * (to - from));
+}
+
+bool ParticleWatch::sample_at(std::size_t n, const DepthAveraged& particles, const ParticleAt& particle,
+                              const Vec2* from) {
     const Vec3 top_of_it(particle.place.x(), particle.place.y(), particle.surface);
-    if (!stands_near(surfaces_[n], ground_[n], boxes_[n], top_of_it, kClose * cell_, cell_)) return;
+    if (!stands_near(surfaces_[n], ground_[n], boxes_[n], top_of_it, kClose * cell_, cell_)) return false;
     const auto barrier = static_cast<Index>(n);
     const auto found = over_.find(particle.id);
     const bool was_over =
         found != over_.end() && std::find(found->second.begin(), found->second.end(), barrier) != found->second.end();
-    const bool came_to_it = from != nullptr && !was_over;
-    const bool on_it = is_on(n, particle.place),
-               over = (on_it && at_crest(surfaces_[n], particle.place, cell_)) ||
-                      (came_to_it && crosses(surfaces_[n], ground_[n], boxes_[n], *from, particle.place));
+    const bool came_to_it = from != nullptr && !was_over, on_it = is_on(n, particle.place);
+    bool over = was_over || (on_it && at_crest(surfaces_[n], particle.place, cell_));
+    const bool mesh = surfaces_[n].shape != nullptr;
+    if (came_to_it)
+        over = (on_it && on_crest(n, particles, particle.place)) ||
+               ((mesh || !on_it) && goes_over(n, particles, *from, particle.place));
     BarrierLoad& load = loads_.barriers[n];
     // On the roof of a neighbour it does not run up this one.
     if (on_it || !particle.on_barrier) load.reach(particle.surface);
     if (over && came_to_it) load.overtopped += particle.volume;
     if (over && !was_over) over_[particle.id].push_back(barrier);
+    return came_to_it && on_it && !over && !mesh;
 }
 
 bool ParticleWatch::is_raised(const Vec2& node) const {
@@ -187,7 +217,7 @@ void ParticleWatch::sample_particles(const DepthAveraged& particles, double dens
             const Sample there = particles.at(place);
             surface = there.elevation + there.depth;
         }
-        sample({c.id[p], place, surface, c.mass[p] / density, on_barrier});
+        sample(particles, {c.id[p], place, surface, c.mass[p] / density, on_barrier});
     }
 }
 

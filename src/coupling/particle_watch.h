@@ -55,10 +55,6 @@ public:
     void begin_round() { ++round_; }
     /// Whether a barrier may be within two cells of a place: elsewhere there is nothing to sample.
     bool is_near(const Vec2& place) const { return tiles_.barriers_at(place).first != nullptr; }
-    /// Takes a particle's place, once a round where it is near. It counts when its way from the last place first leads
-    /// onto a barrier, and once. A particle that was not near before has no way yet. Of two that merge the one whose
-    /// number remains counts for both from then on.
-    void sample(const ParticleAt& particle);
     /// After a step of particles, which note their parents, from the time `before` on: whether a round is due. It is
     /// when one may have moved by half a cell, and at `until`, an output time.
     bool is_due(DepthAveraged& particles, double before, double until);
@@ -75,6 +71,11 @@ private:
         double volume;  ///< on top of barriers, by the end of the run [m3]
     };
     void make_room(std::size_t id);
+    /// Takes a particle's place, once a round where it is near. It counts when its way from the last place first leads
+    /// onto a barrier's crest or over it, and once. What is in an outline and not at the crest is still on its way. A
+    /// particle that was not near before has no way yet. Of two that merge the one whose number remains counts for both
+    /// from then on.
+    void sample(const DepthAveraged& particles, const ParticleAt& particle);
     void note_inflows(const Scene& scene);
     /// Whether a place is on top of a barrier, which stands out of the ground there; of that one.
     bool is_on_top(const Vec2& place) const;
@@ -85,7 +86,13 @@ private:
     /// Otherwise half of the barrier's height would count as run up. Not a number where barriers raise all that are
     /// wet.
     double adjacent_surface(const DepthAveraged& particles, const Vec2& place) const;
-    void sample_at(std::size_t n, const ParticleAt& particle, const Vec2* from);
+    /// `from`: nullptr without a way. Returns whether the particle is on its way up the barrier, in its outline.
+    bool sample_at(std::size_t n, const DepthAveraged& particles, const ParticleAt& particle, const Vec2* from);
+    /// Whether a place on barrier n is at its crest by the ground that particles feel, or what is there reaches above the
+    /// crest. That ground rises over a cell or two, a part of it in the outline. What is there may go back, or round a corner.
+    bool on_crest(std::size_t n, const DepthAveraged& particles, const Vec2& place) const;
+    /// Whether a way between two places beside a barrier leads over its crest, and not round a corner of its outline.
+    bool goes_over(std::size_t n, const DepthAveraged& particles, const Vec2& from, const Vec2& to) const;
     std::vector<Surface> surfaces_;             ///< of each barrier
     std::vector<std::pair<Vec3, Vec3>> boxes_;  ///< around each
     std::vector<Raster> ground_;                ///< that each may be buried in

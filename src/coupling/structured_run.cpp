@@ -102,7 +102,7 @@ void StructuredRun::accumulate() {
     status_.step = s.step, status_.time = s.time, status_.dt = s.dt;
     status_.particles = s.points;
     status_.mass = s.mass, status_.mass_left = s.mass_left;
-    const Vec2 impulse = s.impulse.sum() + s.momentum_given;
+    const Vec2 impulse = s.impulse.sum();
     for (std::size_t axis = 0; axis < 2; ++axis) {
         const auto k = static_cast<Eigen::Index>(axis);
         status_.momentum[axis] = s.momentum[k];
@@ -127,8 +127,7 @@ void StructuredRun::accumulate_water() {
     const WaterStatus& w = both_->water().status();
     const WaterLedger& l = w.ledger;
     const double density = water_density_, solids = status_.mass, mass = solids + density * w.volume;
-    const Vec2 left = l.momentum_left + l.momentum_infiltrated,
-               thrust = w.momentum_given + l.ground + l.walls + l.friction + l.particles;
+    const Vec2 left = l.momentum_left + l.momentum_infiltrated, thrust = l.ground + l.walls + l.friction + l.particles;
     if (both_->alone()) status_.step = w.step, status_.time = w.time;
     status_.dt = w.dt;
     status_.mass = mass;

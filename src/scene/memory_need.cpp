@@ -28,7 +28,7 @@ constexpr double structure_rate = 75.0, water_rate = 200.0;
 constexpr double erodible_rate = 56.0, path_rate = 16.0, deposition_rate = 16.0, forest_rate = 16.0, raised_rate = 8.0;
 /// Besides, for each particle that exchanges mass with the bed: six numbers, and the weights of its sub-points on nodes.
 constexpr double exchange_rate = 48.0 + 136.0 * 9.0 / 8.0;
-constexpr double graphics_need = 350e6;  ///< besides, for pictures: software OpenGL, 290 to 420 MB
+constexpr double graphics_need = 250e6;  ///< besides, for pictures: software OpenGL, 200 to 310 MB in ten cases
 
 /// A 3D grid has an entry for each of its tiles, and storage of those that are reached only.
 constexpr double tile_nodes_3d = 512.0, bytes_per_tile_3d = 16.0;

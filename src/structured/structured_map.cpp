@@ -26,12 +26,18 @@ struct Standing {
     Vec2 velocity{0, 0};
 };
 
+/// What particles bring, a mean over their mass. What stress does to a node in a step is left out: one with next to no
+/// mass gets any speed by it, and no particle does. The depth-averaged flow's peaks are of the same velocity.
+Vec2 brought_by_particles(const StructuredBody& body, Index k) {
+    const double mass = body.node_mass[k];
+    return mass > 0.0 ? Vec2(Vec2(body.nodes[k].px, body.nodes[k].py) / mass) : Vec2(0, 0);
+}
+
 Standing particles_on(const StructuredBody& body, Index k) {
-    const StructuredBody::Moved& node = body.moved[k];
     const double depth = StructuredMap::depth_of(body, k);
     if (!(depth > 0.0)) return {};
     const double density = StructuredMap::density_of(body, k);
-    return {depth, density * StructuredMap::pressing(body, k) * depth, density * depth, Vec2(node.vx, node.vy)};
+    return {depth, density * StructuredMap::pressing(body, k) * depth, density * depth, brought_by_particles(body, k)};
 }
 
 /// With the water: velocities are those of both masses together.
@@ -72,11 +78,17 @@ void StructuredMap::note(const StructuredBody& body, const WaterFlow* water, dou
                 const Standing node = on_node(body, water, i, j);
                 if (!(node.depth > 0.0)) continue;
                 const Index k = body.grid.at(i, j);
-                const double up = climb(k, node.velocity.x(), node.velocity.y());
-                const NodeState now{node.depth, std::sqrt(node.velocity.squaredNorm() + up * up), node.pressure,
-                                    node.inertia / node.depth};
+                const auto along = [&](const Vec2& v) {
+                    const double up = climb(k, v.x(), v.y());
+                    return std::sqrt(v.squaredNorm() + up * up);
+                };
+                const NodeState now{node.depth, along(node.velocity), node.pressure, node.inertia / node.depth};
                 if (peaks == Peaks::grow) peaks_[k].note(now, time, footprint_depth_);
                 extent.note(now, footprint_depth_, g.cell * g.cell, (Vec2(g.x(i), g.y(j)) - centre_).norm());
+                if (water) continue;
+                // The mean is of the step's end. By their mass, nodes with next to none do not count.
+                const Vec2 end(body.moved[k].vx, body.moved[k].vy);
+                extent.motion += body.node_mass[k] * (along(end) - now.speed);
             }
         of_tile_[static_cast<std::size_t>(n)] = extent;
     }

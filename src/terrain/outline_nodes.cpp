@@ -24,9 +24,11 @@ bool is_in_reach(const Polygons& outline, const Vec2& node, double cell) {
 
 }  // namespace
 
-Vec2 away_from(const Polygons& outline, const Vec2& point) {
-    Vec2 least(INFINITY, INFINITY);
-    bool inside = false;
+namespace {
+
+/// Calls body(a, b, away) for every side of an outline from a to b, `away` being the way from its nearest place to a point.
+template <class Body>
+void for_each_side(const Polygons& outline, const Vec2& point, Body&& body) {
     for (const Polygon& polygon : outline.parts)
         for (const auto& ring : polygon.rings)
             for (std::size_t k = 0; k < ring.size(); ++k) {
@@ -34,13 +36,39 @@ Vec2 away_from(const Polygons& outline, const Vec2& point) {
                 const Vec2 side = b - a;
                 const double length2 = side.squaredNorm();
                 const double share = length2 > 0.0 ? std::clamp((point - a).dot(side) / length2, 0.0, 1.0) : 0.0;
-                const Vec2 away = point - a - share * side;
-                if (!(least.squaredNorm() <= away.squaredNorm())) least = away;
-                if ((a.y() > point.y()) != (b.y() > point.y()) &&
-                    point.x() < a.x() + (point.y() - a.y()) / (b.y() - a.y()) * side.x())
-                    inside = !inside;
+                body(a, b, Vec2(point - a - share * side));
             }
+}
+
+}  // namespace
+
+Vec2 away_from(const Polygons& outline, const Vec2& point) {
+    Vec2 least(INFINITY, INFINITY);
+    bool inside = false;
+    for_each_side(outline, point, [&](const Vec2& a, const Vec2& b, const Vec2& away) {
+        if (!(least.squaredNorm() <= away.squaredNorm())) least = away;
+        if ((a.y() > point.y()) != (b.y() > point.y()) &&
+            point.x() < a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
+            inside = !inside;
+    });
     return inside || !std::isfinite(least.x()) ? Vec2(0, 0) : least;
+}
+
+std::vector<Vec2> out_of(const Polygons& outline, const Vec2& point, double cell) {
+    const Vec2 away = away_from(outline, point);
+    const double round_off = 1e-9 * cell;
+    if (away.norm() > round_off) return {away};
+    double least = INFINITY;
+    for_each_side(outline, point,
+                  [&](const Vec2&, const Vec2&, const Vec2& way) { least = std::min(least, way.norm()); });
+    std::vector<Vec2> out;
+    for_each_side(outline, point, [&](const Vec2& a, const Vec2& b, const Vec2& way) {
+        if (a == b || !(way.norm() <= least + round_off)) return;
+        const Vec2 across = Vec2(b.y() - a.y(), a.x() - b.x()).normalized(), near = point - way;
+        const double little = 1e-6 * cell;
+        out.push_back(away_from(outline, near + little * across).norm() > 0.5 * little ? across : Vec2(-across));
+    });
+    return out;
 }
 
 std::vector<char> nodes_of_outline(const Polygons& outline, const GridGeometry& grid) {

@@ -75,16 +75,18 @@ struct Fields {
     }
 };
 
-void add_pixel(BarrierHit& hit, const Fields& fields, Index i, Index j, const Vec2& away) {
+void add_pixel(BarrierHit& hit, const Fields& fields, Index i, Index j, const std::vector<Vec2>& out) {
     const double depth = Fields::at(fields.depth, i, j), pressure = Fields::at(fields.pressure, i, j),
                  time = Fields::at(fields.arrival, i, j);
     if (!(depth > 0.0)) return;  // not reached
     raise(hit.depth, depth), raise(hit.pressure, pressure);
     if (std::isfinite(time) && !(hit.time <= time)) hit.time = time;
     if (std::isfinite(time) && fields.bed != nullptr) raise(hit.surface, fields.bed->at(i, j) + depth);
-    const std::array<bool, 4> faces = sides_of(away);
-    for (std::size_t side = 0; side < kSides.size(); ++side)
-        if (faces[side]) raise(hit.side_depth[side], depth), raise(hit.side_pressure[side], pressure);
+    for (const Vec2& way : out) {
+        const std::array<bool, 4> faces = sides_of(way);
+        for (std::size_t side = 0; side < kSides.size(); ++side)
+            if (faces[side]) raise(hit.side_depth[side], depth), raise(hit.side_pressure[side], pressure);
+    }
 }
 
 std::string cell(double value) { return std::isfinite(value) ? fmt::format(",{:.9g}", value) : ","; }
@@ -109,7 +111,7 @@ BarrierHit hit_on(const Polygons& outline, const std::vector<ProductRaster>& ras
     for (Index j = 0; j < part.ny; ++j)
         for (Index i = 0; i < part.nx; ++i)
             if (marks[static_cast<std::size_t>(j * part.nx + i)])
-                add_pixel(hit, fields, box.i0 + i, box.j0 + j, away_from(outline, {part.x(i), part.y(j)}));
+                add_pixel(hit, fields, box.i0 + i, box.j0 + j, out_of(outline, {part.x(i), part.y(j)}, part.cell));
     return hit;
 }
 
