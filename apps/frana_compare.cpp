@@ -158,6 +158,7 @@ RunAndSurvey read_run_and_survey(const CompareOptions& options) {
     join_remarks_on_coordinates(said);
     read.comparison = compare_rasters(source.rasters, source.bed.values.empty() ? nullptr : &source.bed,
                                       source.footprint_depth, survey, source.starts, later ? &*later : nullptr);
+    if (!read.comparison.stray_path.empty()) throw UserError(read.comparison.stray_path);
     std::vector<std::string>& remarks = read.comparison.remarks;
     remarks.insert(remarks.begin(), said.begin(), said.end());
     read.warnings.insert(read.warnings.end(), said.begin(), said.end());

@@ -512,6 +512,11 @@ TEST_CASE("what an event's survey lacks is said in one sentence", "[ensemble]") 
                 "[calibrate]\n" + only_mu + "[[event]]\ncase = \"rock.toml\"\nobjective = [\"bed_change\"]\n");
     CHECK_THAT(slide.frana("calibrate find.toml --out found --quiet").err,
                Contains("survey.bed_change: found beside a bed that does not change"));
+    slide.write("path.geojson", R"({"type": "LineString", "coordinates": [[35, 2], [140, 2]]})");
+    slide.write("find.toml",
+                "[calibrate]\n" + only_mu + "[[event]]\ncase = \"event.toml\"\nobjective = [\"runout\"]\n");
+    CHECK_THAT(slide.frana("calibrate find.toml --out found --quiet").err,
+               Contains("survey.path: found a line that does not touch the surveyed footprint"));
     CHECK_THAT(complaint("sigma_height = 0\n"), Contains("event.0.sigma_height: found 0 m; expected a height above 0"));
     CHECK_THAT(complaint("sigma_log = -1\n"), Contains("found -1; expected a number above 0"));
 }

@@ -172,6 +172,21 @@ TEST_CASE("A survey in the case is compared with at the end of the run", "[compa
     CHECK_THAT(later.err, Contains("rasters/peak_depth.tif: is not there") && Contains("add \"geotiff\""));
 }
 
+TEST_CASE("A path of the case that touches neither flow nor survey leaves the areas compared, and is told",
+          "[compare]") {
+    const Slope slope;
+    write_text(slope.path() / "beside.geojson", feature("LineString", "[[120,2],[140,2]]"));
+    write_text(slope.path() / "case.toml", text_of(slope.path() / "case.toml") +
+                                               "[survey]\nfootprint = \"footprint.geojson\"\npath = "
+                                               "\"beside.geojson\"\n");
+    REQUIRE(slope.frana("run case.toml --out run --overwrite --quiet").code == 0);
+    const Json json = Json::parse(text_of(slope.run_dir() / "compare.json"));
+    CHECK(json["iou"].get<double>() > 0.0);
+    CHECK(json["runout_difference"].is_null());
+    CHECK_THAT(json["remarks"].dump(), Contains("touches neither what was simulated nor what was surveyed"));
+    CHECK_THAT(text_of(slope.run_dir() / "report.md"), Contains("beside.geojson: found a line that touches neither"));
+}
+
 TEST_CASE("A comparison with other files than the case's stands beside the run's own, and says so", "[compare]") {
     const Slope slope(R"(["geotiff", "png"])",
                       "[survey]\nfootprint = \"footprint.geojson\"\n[[gauge]]\nname = \"g\"\npoint = [60, 50]\n");
@@ -248,6 +263,10 @@ TEST_CASE("What cannot be compared leaves with 2, one sentence, and the run as i
     refused("run --survey footprint.geojson --path dot.geojson", "dot.geojson: ");
     refused("run --survey footprint.geojson --path far.geojson",
             "far.geojson: found no point of its line on the terrain");
+    // within the terrain, and beside all that flowed or was surveyed
+    write_text(slope.path() / "beside.geojson", feature("LineString", "[[120,2],[140,2]]"));
+    refused("run --survey footprint.geojson --path beside.geojson",
+            "beside.geojson: found a line that touches neither what was simulated nor what was surveyed");
     refused("run --survey footprint.geojson --deposit gone.tif", "gone.tif: no such file");
     refused("run --survey footprint.geojson --deposit footprint.geojson", "footprint.geojson: cannot be opened");
     refused("run --survey footprint.geojson --json footprint.geojson", "found a file that this command reads");

@@ -406,6 +406,64 @@ TEST_CASE("Of a given path that begins beyond the terrain nothing tells that it 
     CHECK_THAT(c.remarks[0], Catch::Contains("track.geojson: found an end of the path where the terrain has no elev"));
 }
 
+TEST_CASE("A given path that touches neither flow nor survey gives no runouts, and one beside them is told",
+          "[compare]") {
+    ComparedFlow flow(200);
+    Survey survey;
+    survey.footprint = {{box(50, 50, 300, 120)}, "", "survey.geojson"};
+    survey.path_source = "track.geojson";
+    const auto of = [&](const Polyline& path) {
+        survey.path = path;
+        return compare(flow.run(), survey);
+    };
+    const Comparison stray = of({{60, 175}, {400, 175}});
+    CHECK_THAT(stray.stray_path, Catch::Contains("track.geojson: found a line that touches neither"));
+    CHECK(std::isnan(stray.trace.runout));
+    CHECK(std::isnan(stray.surveyed_runout));
+    CHECK(stray.trace.areas.simulated() == Approx(15000));
+    REQUIRE(stray.remarks.size() == 1);
+    CHECK_THAT(stray.remarks[0], Catch::Contains(stray.stray_path + "; runouts are not known"));
+
+    const Comparison by_survey = of({{230, 100}, {400, 100}}), by_flow = of({{60, 140}, {400, 140}});
+    CHECK(by_survey.stray_path + by_flow.stray_path == "");
+    REQUIRE(by_survey.remarks.size() == 2);
+    CHECK_THAT(by_survey.remarks[0], Catch::Contains("the path does not touch what was simulated"));
+    CHECK_THAT(by_survey.remarks[1], Catch::Contains("begins 135.1 m from the nearest place where material"));
+    REQUIRE(by_flow.remarks.size() == 1);
+    CHECK_THAT(by_flow.remarks[0], Catch::Contains("the path does not touch what was surveyed"));
+    CHECK(of({{60, 100}, {400, 100}}).remarks.empty());
+
+    // Where nothing lay at the start it is near where material came in, also at another node of that.
+    for (double& time : flow.arrival.values) time += 10.0;
+    SimulatedRun later = flow.run();
+    survey.path = Polyline{{60, 60}, {400, 60}};
+    later.starts = {Vec2(75, 105)};
+    CHECK(compare(later, survey).remarks.empty());
+    later.starts = {Vec2(175, 105)};
+    REQUIRE(compare(later, survey).remarks.size() == 1);
+    CHECK_THAT(compare(later, survey).remarks[0], Catch::Contains("the path begins"));
+}
+
+TEST_CASE("Without a footprint a given path has to come to the flow or to changes of the ground", "[compare]") {
+    const ComparedFlow flow(200);
+    const Raster still = made([](double, double) { return 0.0; });
+    SimulatedRun run = flow.run();
+    run.bed_change = &still;
+    Survey survey;
+    survey.bed_change = made([](double x, double y) { return within(x, y, 250, 50, 300, 150) ? -0.5 : 0.05; });
+    survey.bed_change_source = "dod.tif";
+    survey.path_source = "track.geojson";
+    survey.path = Polyline{{60, 175}, {400, 175}};
+    const Comparison stray = compare(run, survey);
+    CHECK_FALSE(stray.stray_path.empty());
+    CHECK(stray.bed_change_steps.empty());
+    CHECK(stray.bed_change.has_value());
+    survey.path = Polyline{{60, 175}, {400, 175}, {275, 100}};
+    const Comparison found = compare(run, survey);
+    CHECK(found.stray_path.empty());
+    CHECK_FALSE(found.bed_change_steps.empty());
+}
+
 TEST_CASE("Where the flow leaves the way of water, the runout is put in doubt") {
     ComparedFlow flow(300);
     // a valley across: the water turns north at x = 300 m, the survey goes on up the opposite slope

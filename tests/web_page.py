@@ -116,6 +116,9 @@ def check_use():
     apart = math.dist(pointing["place"], pointing["found"] or (0, 0))
     expect(apart < 0.1 and pointing["depth"] > 1.0,
            f"pointing at {pointing['depth']:.2f} m of flow found a place {apart:.2f} m from it")
+    for name in ("run", "flat", "many"):
+        left = told(name, "probe")["left"]
+        expect(left is not None and left >= 0, f"{name}: labels of a chart up to 4e7 m3 begin at {left}, and are cut")
     flowed = "Nothing flowed"
     expect(flowed in told("thin", "probe")["notes"], "a run below the footprint depth does not say that nothing flowed")
     expect(flowed not in found["notes"], "a run that flowed says that nothing did")

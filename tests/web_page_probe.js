@@ -1,5 +1,5 @@
 // tests/web_page.sh puts this at the end of a copy of a page: it uses what the page offers, and tells what came of it.
-const probe = {errors: [], legends: {}, notes: "", flat: false, under: [], pointing: null};
+const probe = {errors: [], legends: {}, notes: "", flat: false, under: [], pointing: null, left: null};
 window.addEventListener("error", event => probe.errors.push(event.message));
 window.addEventListener("unhandledrejection", event => probe.errors.push(String(event.reason)));
 const rest = ms => new Promise(done => setTimeout(done, ms));
@@ -28,6 +28,12 @@ function pointAtRuns() {
   probe.pointing = {place, found: state.hover};
 }
 
+/** Where the labels of a chart begin that reaches 40 million m3: below 0 they are cut. */
+function leftOfLabels() {
+  charts[0].show({name: "Volume", unit: "m³", values: [0, 4e7], along: [0, 10], alongUnit: "s"});
+  return Math.min(...[...charts[0].element.querySelectorAll("text")].map(text => text.getBBox().x));
+}
+
 async function useAll() {
   while (!get("check") && get("trouble").hidden) await rest(20);  // which chooses too
   await rest(300);
@@ -48,6 +54,7 @@ async function useAll() {
   }
   if (view && data.frames.some(frame => frame.deepest)) await pointAtFlow();
   if (view && data.runs) pointAtRuns();
+  if (charts.length) probe.left = leftOfLabels();
   probe.under = [...get("under").querySelectorAll("b")].map(value => value.textContent);
 }
 

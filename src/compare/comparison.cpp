@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "compare/flow_tracks.h"
+#include "compare/given_path.h"
 
 namespace frana {
 namespace {
@@ -31,7 +32,9 @@ public:
     }
 
     Comparison all() {
+        find_cover();
         choose_path();
+        if (survey_.path) judge_given_path();
         if (result_.extents) compare_extents();
         compare_beds();
         if (result_.extents) make_remarks();
@@ -39,10 +42,16 @@ public:
     }
 
 private:
-    void compare_extents() {
+    void find_cover() {
         if (run_.final_depth) lying_ = with_deposit(*run_.final_depth, run_.deposited_depth);
-        const bool buried = lying_ && run_.deposited_depth;
-        const Raster ever = buried ? deepest_cover(*run_.peak_depth, *lying_) : *run_.peak_depth;
+        if (lying_ && run_.deposited_depth) buried_ = deepest_cover(*run_.peak_depth, *lying_);
+    }
+
+    /// What was ever covered [m].
+    const Raster& cover() const { return buried_ ? *buried_ : *run_.peak_depth; }
+
+    void compare_extents() {
+        const Raster& ever = cover();
         result_.outline = pixel_outline(ever, run_.limit);
         find_paths(ever);
         result_.trace = scores(ever, result_.outline);
@@ -86,6 +95,44 @@ private:
         if (result_.path.empty())
             remark("no steepest path from the start of the flow is known, so no {}; give one with --path",
                    result_.extents ? "runout" : "volumes along it");
+    }
+
+    /// A line that has nothing to do with the flow gives runouts that look like answers.
+    void judge_given_path() {
+        const double cell = result_.cell;
+        const bool to_flow = comes_to_flow(result_.path, cover(), run_.limit);
+        const bool to_survey = result_.extents
+                                   ? comes_to_polygons(result_.path, survey_.footprint, cell)
+                                   : comes_to_changes(result_.path, *survey_.bed_change, survey_.bed_change_noise);
+        if (!to_flow && !to_survey) {
+            result_.stray_path = words_on_stray(survey_.path_source);
+            remark("{}; {} not known", result_.stray_path,
+                   result_.extents ? "runouts are" : "the changes along it are");
+            result_.path.clear(), result_.path_source.clear();
+            return;
+        }
+        const bool anything = comes_to_anything(cover());
+        if (!to_survey || (!to_flow && anything))
+            remark(
+                "{}: the path does not touch what was {}, whose {} are those of the places along it that lie nearest; "
+                "draw it along the flow",
+                survey_.path_source, to_survey ? "simulated" : "surveyed", result_.extents ? "runouts" : "changes");
+        tell_begin();
+    }
+
+    bool comes_to_anything(const Raster& depth) const {
+        return std::any_of(depth.values.begin(), depth.values.end(), [&](double h) { return h > run_.limit; });
+    }
+
+    /// Runouts count from the path's beginning.
+    void tell_begin() {
+        if (!run_.arrival_time) return;
+        const double apart = distance_to_start(result_.path.front(), *run_.arrival_time, run_.starts);
+        if (!(apart > kNoticeable * result_.cell)) return;
+        remark(
+            "{}: the path begins {:.4g} m from the nearest place where material was released or came in, and distances "
+            "along it count from there; expected it from the release to the toe",
+            survey_.path_source, apart);
     }
 
     void find_paths(const Raster& ever) {
@@ -247,7 +294,8 @@ private:
     FrontAlong surveyed_front_, simulated_front_;
     double step_ = 1.0;
     Comparison result_;
-    std::optional<Raster> lying_;  ///< at the end, also what has become bed [m]
+    std::optional<Raster> lying_;   ///< at the end, also what has become bed [m]
+    std::optional<Raster> buried_;  ///< what was ever covered, where some became bed [m]
 };
 
 }  // namespace

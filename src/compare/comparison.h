@@ -66,6 +66,7 @@ struct Comparison {
     Rings outline;                                ///< of the trace
     std::vector<std::string> remarks;
     bool path_is_given = false;  ///< the survey's; else it was found on the terrain
+    std::string stray_path;      ///< why the survey's path is not used; "": it is, or none was given
 };
 
 /// The path, then those of the others.

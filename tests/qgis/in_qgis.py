@@ -142,6 +142,9 @@ class FromOutside(unittest.TestCase):
         for words in ("material.bed.mu: friction coefficient", "a number at least 0 and at most 10", "[m/s^2]",
                       "DEPTH_FIELD", "MANNING_N", "voellmy"):
             self.assertIn(words, out)
+        for name, title in {"PEAK_PRESSURE": "Peak pressure on the bed", "PEAK_DYNAMIC_PRESSURE": "Peak dynamic pressure",
+                            "PEAK_DEPTH": "Peak depth"}.items():
+            self.assertRegex(out, rf"(?m)^{name}:.*\n\s*{title}$")
 
     def test_3_a_run_of_a_shipped_terrain_is_that_of_its_case(self):
         by_hand, folder = os.path.join(WORK, "by_hand"), os.path.join(WORK, "outside")
@@ -152,6 +155,7 @@ class FromOutside(unittest.TestCase):
                                        '--SET=output.formats=["geotiff"]', f"--OUTPUT={folder}")
         self.assertEqual(code, 0, out + err)
         self.assertIn(f"PEAK_DEPTH:\t{folder}/rasters/peak_depth.tif", out)
+        self.assertIn(f"PEAK_DYNAMIC_PRESSURE:\t{folder}/rasters/peak_dynamic_pressure.tif", out)
         deepest, volumes = [], []
         for run in (by_hand, folder):
             peak = gdal.Open(os.path.join(run, "rasters/peak_depth.tif"))
@@ -266,7 +270,8 @@ class FromInside(unittest.TestCase):
         self.assertTrue(handleAlgorithmResults(algorithm, context, QgsProcessingFeedback(), parameters={}))
         group = QgsProject.instance().layerTreeRoot().findGroup("My run")
         names = [node.name() for node in group.findLayers()]
-        self.assertEqual(names[:3], ["footprint", "peak depth", "peak speed"])
+        self.assertEqual(names[:5], ["footprint", "peak depth", "peak speed", "peak dynamic pressure",
+                                     "peak pressure on the bed"])
         self.assertEqual(len(names), len(files))
         self.assertEqual(len(QgsProject.instance().layerTreeRoot().findLayers()), len(files))
         self.assertEqual([node.itemVisibilityChecked() for node in group.findLayers()][:3], [True, True, False])

@@ -14,6 +14,7 @@ _RUN = ("footprint.geojson", "rasters/peak_depth.tif", "rasters/peak_speed.tif",
         "rasters/peak_pressure.tif", "rasters/arrival_time.tif", "rasters/lying_depth.tif", "rasters/final_depth.tif",
         "rasters/bed_change.tif", "rasters/elevation.tif")
 _PLACE = "frana/place"
+_TITLES = {"peak_pressure": "peak pressure on the bed"}  # which would be taken for that of an impact
 
 
 class _IntoGroup(QgsProcessingLayerPostProcessorInterface):
@@ -47,6 +48,12 @@ class _IntoGroup(QgsProcessingLayerPostProcessorInterface):
         self._alive.remove(self)
 
 
+def title_of(file):
+    """What a file of results is called in QGIS."""
+    name = os.path.splitext(os.path.basename(file))[0]
+    return _TITLES.get(name, name.replace("_", " "))
+
+
 def of_run(folder):
     """Files of a run that are layers, as far as they are there."""
     found = [os.path.join(folder, *name.split("/")) for name in _RUN]
@@ -71,7 +78,7 @@ def load(files, group, context):
         raster = file.endswith(".tif")
         rasters += raster
         shown = not raster or rasters == 1 or file.endswith("elevation.tif")
-        name = os.path.splitext(os.path.basename(file))[0].replace("_", " ")
+        name = title_of(file)
         details = QgsProcessingContext.LayerDetails(name, project, name)
         details.forceName = True
         details.setPostProcessor(_IntoGroup(group, project, place, shown))

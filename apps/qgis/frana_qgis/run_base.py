@@ -16,8 +16,8 @@ from .layers import require_folder
 from .widgets import set_advanced
 
 _RASTERS = {"PEAK_DEPTH": "rasters/peak_depth.tif", "PEAK_SPEED": "rasters/peak_speed.tif",
-            "PEAK_PRESSURE": "rasters/peak_pressure.tif", "ARRIVAL_TIME": "rasters/arrival_time.tif",
-            "FINAL_DEPTH": "rasters/final_depth.tif"}
+            "PEAK_DYNAMIC_PRESSURE": "rasters/peak_dynamic_pressure.tif", "PEAK_PRESSURE": "rasters/peak_pressure.tif",
+            "ARRIVAL_TIME": "rasters/arrival_time.tif", "FINAL_DEPTH": "rasters/final_depth.tif"}
 
 
 class RunAlgorithm(FranaAlgorithm):
@@ -29,8 +29,7 @@ class RunAlgorithm(FranaAlgorithm):
         self.add_flag("LOAD", "Load the results into the project, in a group of their own", True)
         self.addParameter(QgsProcessingParameterFolderDestination("OUTPUT", "Folder of the run"))
         for name, file in _RASTERS.items():
-            title = os.path.splitext(os.path.basename(file))[0].replace("_", " ").capitalize()
-            self.addOutput(QgsProcessingOutputRasterLayer(name, title))
+            self.addOutput(QgsProcessingOutputRasterLayer(name, results.title_of(file).capitalize()))
         self.addOutput(QgsProcessingOutputVectorLayer("FOOTPRINT", "Footprint"))
         self.addOutput(QgsProcessingOutputFile("REPORT", "Report"))
         self.addOutput(QgsProcessingOutputFile("PROJECT", "Project of the run, where the program writes one"))

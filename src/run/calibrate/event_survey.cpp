@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "compare/blocks.h"
+#include "compare/given_path.h"
 #include "run/folder/comparison.h"
 #include "run/folder/products.h"
 #include "run/folder/release_results.h"
@@ -76,6 +77,7 @@ EventSurvey::EventSurvey(const SurveyedEvent& event, const EnsembleBase& base)
         later_ = may_be_released_later_on(release_sources(CaseFile::read(event.runs.case_file)), like);
     survey_.footprint = *base.footprint;
     perimeter_ = perimeter_of(*base.survey);
+    if (survey_.path && counts(Evidence::runout)) require_on_survey(event, base.bed.geometry.cell);
     if (survey_.path)
         bed_ = bed_under(*survey_.path, base);
     else if (!base.path.empty())
@@ -83,6 +85,16 @@ EventSurvey::EventSurvey(const SurveyedEvent& event, const EnsembleBase& base)
     if (counts(Evidence::runout) && !survey_.path)
         throw lacks(event, "survey.path", "the path", "draw it, since no steepest path from the release is known");
     read_gauges(event);
+}
+
+/// Beside the surveyed extent a path has no surveyed runout, whatever flows.
+void EventSurvey::require_on_survey(const SurveyedEvent& event, double cell) const {
+    if (comes_to_polygons(*survey_.path, survey_.footprint, cell)) return;
+    throw UserError(fmt::format(
+        "{}: survey.path: found a line that does not touch the surveyed footprint; expected the path of the "
+        "event \"{}\", from the release to the toe; draw it along the flow, or check its coordinates and "
+        "its CRS",
+        event.runs.case_file.string(), event.name));
 }
 
 bool EventSurvey::counts(Evidence evidence) const {

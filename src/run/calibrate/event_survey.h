@@ -24,6 +24,7 @@ public:
 private:
     class Watch;
     bool counts(Evidence evidence) const;
+    void require_on_survey(const SurveyedEvent& event, double cell) const;
     void require_visible(const SurveyedEvent& event, const SeenAtGauge& seen) const;
     void read_gauges(const SurveyedEvent& event);
 

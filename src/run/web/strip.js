@@ -40,10 +40,21 @@ class Chart {
     this.draw();
   }
 
+  /** Of a text as the browser draws it; 0 while the chart is hidden. */
+  widthOf(text) {
+    const element = svg("text", {}, text);
+    this.element.append(element);
+    const width = element.getComputedTextLength();
+    element.remove();
+    return width;
+  }
+
   draw() {
     const {name, unit, values, along, alongUnit} = this.curve;
-    const width = this.element.clientWidth || 500, height = 104, left = 58, right = 12, top = 20, bottom = 18;
     const last = along[along.length - 1] || 1, most = this.curve.most || roundAbove(Math.max(...values));
+    const widest = Math.max(...[0, 0.5, 1].map(share => this.widthOf(written(share * most))));  // a volume may have 1e8 m³
+    const width = this.element.clientWidth || 500, height = 104, right = 12, top = 20, bottom = 18;
+    const left = Math.max(58, Math.ceil(widest) + 8);
     this.x = t => left + (width - left - right) * t / last;
     this.toAlong = x => Math.max(0, Math.min(last, (x - left) / (width - left - right) * last));
     const y = value => height - bottom - (height - top - bottom) * value / most;
