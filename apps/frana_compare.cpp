@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <iostream>
 #include <iterator>
+#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -94,6 +96,27 @@ bool same_file(const fs::path& a, const fs::path& b) {
     return a == b || fs::weakly_canonical(a, gone) == fs::weakly_canonical(b, gone);
 }
 
+bool same_files(const SurveyFiles& a, const SurveyFiles& b) {
+    return same_file(a.footprint, b.footprint) && same_file(a.deposit, b.deposit) && same_file(a.path, b.path) &&
+           same_file(a.bed_change, b.bed_change) && (a.bed_change.empty() || a.bed_change_noise == b.bed_change_noise);
+}
+
+/// What an earlier comparison was made of, by its scores. Nothing where there are none.
+std::optional<SurveyFiles> files_in(const fs::path& scores) {
+    std::error_code none;
+    if (!fs::exists(scores, none)) return {};
+    const nlohmann::json json = json_in(scores);
+    if (!json.is_object()) return {};
+    SurveyFiles files;
+    files.footprint = json.value("survey", std::string());
+    files.deposit = json.value("deposit", std::string());
+    files.path = json.value("path", std::string());
+    if (!json.contains("bed_change")) return files;
+    files.bed_change = json["bed_change"].value("survey", std::string());
+    files.bed_change_noise = json["bed_change"].value("noise", files.bed_change_noise);
+    return files;
+}
+
 /// How a comparison stands to that of the run's own report: in names of files, and in words.
 struct Standing {
     bool apart = false;            ///< the case has another survey
@@ -101,20 +124,31 @@ struct Standing {
     std::string words;             ///< empty: the case has no survey
 };
 
+/// Files of other folders may have the same name. What was made of those stays, and a number tells this one from it.
+void number_apart(const fs::path& run_dir, const SurveyFiles& now, Standing& standing) {
+    const std::string first = standing.name;
+    for (int number = 2;; ++number) {
+        const std::optional<SurveyFiles> other = files_in(run_dir / (standing.name + ".json"));
+        if (!other || same_files(*other, now)) return;
+        standing.words += fmt::format(" `{}.json` is of other files (`{}`), and stays.", standing.name,
+                                      (other->footprint.empty() ? other->bed_change : other->footprint).string());
+        standing.name = fmt::format("{}_{}", first, number);
+    }
+}
+
 Standing standing_of(const CompareOptions& options) {
     const SurveyFiles own = files_of_case(options.run_dir), now = files_of(options);
     if (own.footprint.empty()) return {};
-    const bool same = same_file(own.footprint, now.footprint) && same_file(own.deposit, now.deposit) &&
-                      same_file(own.path, now.path) && same_file(own.bed_change, now.bed_change) &&
-                      (now.bed_change.empty() || own.bed_change_noise == now.bed_change_noise);
-    if (same) return {false, "compare", "These are the survey files of the case, as in `report.md`."};
+    if (same_files(own, now)) return {false, "compare", "These are the survey files of the case, as in `report.md`."};
     std::string name = (now.footprint.empty() ? now.bed_change : now.footprint).stem().string();
     std::replace(name.begin(), name.end(), ' ', '_');  // links of Markdown end at a space
-    return {
+    Standing standing = {
         true, "compare_with_" + name,
         fmt::format("The case has other survey files (`{}`). `report.md`, `compare.json`, `figures/compare.png` and "
                     "the ParaView state `survey` are of those, and stay.",
                     own.footprint.filename().string())};
+    number_apart(options.run_dir, now, standing);
+    return standing;
 }
 
 void require_survey(const CompareOptions& options) {

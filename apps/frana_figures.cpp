@@ -246,15 +246,20 @@ void read_bed(FigureSource& source, std::vector<std::string>& warnings) {
 
 /// Maps of the frame nearest to a time: figures/map_depth_t12.5s.png, map_speed_t12.5s.png, damage, and with stresses
 /// map_effective_stress_xx_t12.5s.png and so on.
-/// `shown` stores what they show.
+/// `shown` stores what they show. Depth has with it what has become bed. Other fields are shown where the flow is.
 void add_moment(const FigureSource& source, double time, std::list<ProductRaster>& shown, Gallery& gallery) {
     const Index nearest = choose_frame(frame_times(source.run_dir), time, source.run_dir / "grid.pvd");
-    const LoadedFrame frame = read_frame(source.run_dir, nearest);
+    LoadedFrame frame = read_frame(source.run_dir, nearest);
     if (std::abs(frame.time - time) > 1e-9 * std::max(1.0, std::abs(frame.time)))
         gallery.warn(fmt::format("no frame at {:.6g} s; the nearest, at {:.6g} s, is drawn", time, frame.time));
     const std::string moment = fmt::format("{:.6g}", frame.time);
     const auto keep = [&](ProductRaster product) { return &shown.emplace_back(std::move(product)); };
     const ProductRaster* extent = frame.has("depth") ? keep(from_frame(frame, "depth", "depth")) : nullptr;
+    add_deposit(frame);
+    const auto words_of = [&](const std::string& field) -> std::string {
+        if (field == "water_depth") return "depth of free water";
+        return field == "depth" && frame.has("deposited_depth") ? "depth with what has become bed" : field;
+    };
     for (const char* field : {"depth", "speed", "damage", "water_depth"}) {
         if (!frame.has(field)) {
             if (field == std::string("damage") || field == std::string("water_depth")) continue;  // of few runs only
@@ -262,8 +267,7 @@ void add_moment(const FigureSource& source, double time, std::list<ProductRaster
             continue;
         }
         const ProductRaster* product = keep(from_frame(frame, field, fmt::format("{}_t{}s", field, moment)));
-        const std::string words = field == std::string("water_depth") ? "depth of free water" : field;
-        add_map(source, *product, fmt::format("{} at t = {} s", words, moment), extent, gallery);
+        add_map(source, *product, fmt::format("{} at t = {} s", words_of(field), moment), extent, gallery);
     }
     constexpr const char* kComponents[] = {"xx", "yy", "xy"};
     for (const char* field : {"effective_stress", "stress"}) {

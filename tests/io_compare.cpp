@@ -223,6 +223,32 @@ TEST_CASE("A comparison with other files than the case's stands beside the run's
     CHECK(as_drawn());
 }
 
+TEST_CASE("Comparisons with files of the same name in other folders, or with another path, stand beside one another",
+          "[compare]") {
+    const Slope slope(R"(["geotiff"])", "[survey]\nfootprint = \"footprint.geojson\"\n");
+    REQUIRE(slope.run.code == 0);
+    for (const char* folder : {"s1", "s2"}) fs::create_directories(slope.path() / folder);
+    write_text(slope.path() / "s1/f.geojson", feature("Polygon", "[[[15,15],[90,15],[90,85],[15,85],[15,15]]]"));
+    write_text(slope.path() / "s2/f.geojson", feature("Polygon", "[[[15,15],[60,15],[60,85],[15,85],[15,15]]]"));
+    write_text(slope.path() / "path.geojson", feature("LineString", "[[35,50],[140,50]]"));
+    const auto scores = [&](const std::string& name) { return Json::parse(text_of(slope.run_dir() / name)); };
+    REQUIRE(slope.frana("compare run --survey s1/f.geojson").code == 0);
+    const Json first = scores("compare_with_f.json");
+    const Outcome second = slope.frana("compare run --survey s2/f.geojson");
+    REQUIRE(second.code == 0);
+    CHECK_THAT(second.out, Contains("run/compare_with_f_2.json") && Contains("run/compare_with_f_2.md") &&
+                               Contains("`compare_with_f.json` is of other files (`s1/f.geojson`), and stays."));
+    CHECK(scores("compare_with_f.json") == first);
+    CHECK(scores("compare_with_f_2.json")["survey"] == "s2/f.geojson");
+    REQUIRE(slope.frana("compare run --survey s1/f.geojson --path path.geojson").code == 0);
+    CHECK(scores("compare_with_f_3.json")["path"] == "path.geojson");
+    CHECK(scores("compare_with_f.json") == first);
+    // The same files come into their own place again.
+    REQUIRE(slope.frana("compare run --survey " + (slope.path() / "s2/f.geojson").string()).code == 0);
+    REQUIRE(slope.frana("compare run --survey s1/f.geojson --path path.geojson").code == 0);
+    CHECK_FALSE(fs::exists(slope.run_dir() / "compare_with_f_4.json"));
+}
+
 TEST_CASE("compare finds the terrain of a run without VTK files, and does without when it is gone", "[compare]") {
     const Slope slope(R"(["geotiff"])");
     REQUIRE(slope.frana("compare run --survey footprint.geojson").code == 0);

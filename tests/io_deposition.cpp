@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "catch.h"
+#include "io_figures_scene.h"
 #include "plane_case.h"
 #include "read_layer.h"
 #include "read_raster.h"
@@ -108,6 +109,30 @@ TEST_CASE("What lies at the end, as flow or bed, is one raster, and numbers say 
     CHECK_THAT(report, !Contains("map_final_depth.png"));
     CHECK_FALSE(fs::exists(Slide("[erodible]\nlaw = \"none\"\n").run("rock", "--set deposition.law=none") / "rasters" /
                            "lying_depth.tif"));
+}
+
+TEST_CASE("Maps of a moment show what has become bed by then, and charts say that they do not",
+          "[program][deposition][figures]") {
+    if (figures::cannot_draw()) return;
+    const Slide slide(
+        "[[gauge]]\nname = \"g\"\npoint = [60, 50]\n[[profile]]\nname = \"p\"\nline = [[20, 50], [140, 50]]\n");
+    const fs::path dir = slide.run("run", "--set 'output.formats=[\"vtk\",\"geotiff\",\"png\"]'");
+    CHECK_THAT(text_of(dir / "report.md"),
+               Contains("depth and speed at the gauges, of the flow without what has become bed") &&
+                   Contains("profile p, of the flow without what has become bed"));
+    const double end = Json::parse(text_of(dir / "run.json"))["simulated_time"].get<double>();  // all has become bed
+    const Outcome drawn = slide.frana(fmt::format("figures run --time {}", end));
+    INFO(drawn.err);
+    REQUIRE(drawn.code == 0);
+    const auto coloured = [&](const std::string& name) {
+        const frana::Pixels picture = read_png(dir / "figures" / name);
+        int count = 0;
+        for (int y = 0; y < picture.height; ++y)
+            for (int x = 0; x < picture.width; ++x) count += figures::saturation(picture.at(x, y)) > 60 ? 1 : 0;
+        return count;
+    };
+    // Labels of other lengths leave the maps other sizes. Of the flow alone only the bar would have colours.
+    CHECK(coloured(fmt::format("map_depth_t{:.6g}s.png", end)) > 0.5 * coloured("map_lying_depth.png"));
 }
 
 TEST_CASE("Ground that thin layers bury was covered", "[program][deposition]") {

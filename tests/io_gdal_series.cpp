@@ -59,6 +59,48 @@ TEST_CASE("a state that is restored takes away what came after it, without anoth
     CHECK(times() == std::vector<double>{0.0, 2.0, 3.5});
 }
 
+TEST_CASE("a series that is repeated or goes on after a kill has the same bytes", "[insitu][gdal][resume]") {
+    const FreshFolder folder;
+    const fs::path whole = folder.path() / "whole" / "lines.gpkg", other = folder.path() / "other" / "lines.gpkg";
+    // Of some times there is no line, and of others more than fit a page of the file.
+    const auto at = [](int t) {
+        std::vector<std::pair<double, Polyline>> lines;
+        for (int n = 0; n < (t % 3 == 1 ? 0 : 7 * t); ++n) lines.push_back({0.5, Polyline(50, Vec2(t, 0.1 * n))});
+        return lines;
+    };
+    const auto add = [&](ShapeSeries& series, int from, int until) {
+        for (int t = from; t <= until; ++t) series.add_lines(t, at(t), "m");
+    };
+    ShapeSeries first(whole, utm32);
+    add(first, 0, 12);
+    const std::string bytes = text_of(whole);
+    CHECK(bytes.find("2000-01-01T00:00:00") != std::string::npos);  // the one date, so none of the clock
+
+    ShapeSeries repeated(other, utm32);
+    add(repeated, 0, 12);
+    CHECK((text_of(other) == bytes));
+    ShapeSeries again(other, utm32);
+    add(again, 0, 12);
+    CHECK((text_of(other) == bytes));
+
+    for (const int saved : {0, 4, 8}) {
+        CAPTURE(saved);
+        fs::remove(other);
+        MemoryArchive state;
+        {
+            ShapeSeries killed(other, utm32);
+            add(killed, 0, saved);
+            killed.serialize(state);
+            add(killed, saved + 1, saved + 3);
+        }
+        ShapeSeries resumed(other, utm32);
+        state.rewind();
+        resumed.serialize(state);
+        add(resumed, saved + 1, 12);
+        CHECK((text_of(other) == bytes));
+    }
+}
+
 TEST_CASE("a full disk takes no shapes, and leaves those before", "[insitu][gdal]") {
     const FreshFolder folder;
     const fs::path file = folder.path() / "lines.gpkg";

@@ -285,6 +285,33 @@ TEST_CASE("A deposit is what lies at the end without free water, and that the re
     CHECK_FALSE(solids_at_end({}).has_value());
 }
 
+TEST_CASE("A raster of depths whose films count too is told, with the footprint of its run", "[survey]") {
+    const Files files;
+    RasterSpec spec;
+    spec.columns = 40, spec.rows = 30;
+    spec.transform = {600000.0, 10.0, 0.0, 5100300.0, 0.0, -10.0};
+    const auto said = [&](const std::string& name) {
+        fs::create_directories((files / name).parent_path());
+        make_raster(files / name, spec);
+        std::vector<std::string> log;
+        read(files / name, wkt_of("EPSG:32632"), log);
+        return log;
+    };
+    spec.value = [](int column, int) { return column < 30 ? 2.0 : column < 35 ? 0.05 : 0.0; };
+    CHECK_FALSE(any_contains(said("classes.tif"), "found values"));
+    spec.value = [](int column, int row) {
+        return column < 30 ? 0.5 + 0.01 * row : column < 35 ? 1e-3 * (row + 1) : 0.0;
+    };
+    const std::string told = "found values from 0.001 to 0.79 above 0, 14.3 % of them below 0.1, and all of them count";
+    CHECK(any_contains(said("depth.tif"), told));
+    CHECK(any_contains(said("depth.tif"), "set thin ones to 0"));
+    files.text("footprint.geojson", "{}");
+    CHECK(any_contains(said("rasters/peak_depth.tif"), told));
+    CHECK(any_contains(said("rasters/peak_depth.tif"), (files / "footprint.geojson").string() + " instead"));
+    spec.value = [](int column, int row) { return column < 30 ? 0.5 + 0.01 * row : 0.0; };
+    CHECK_FALSE(any_contains(said("thick.tif"), "found values"));
+}
+
 TEST_CASE("Elevations are no surveyed footprint", "[survey]") {
     const Files files;
     RasterSpec spec;

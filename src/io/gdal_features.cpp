@@ -9,6 +9,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "io/gdal_crs.h"
+#include "io/gdal_date.h"
 #include "io/gdal_shapes.h"
 
 namespace frana {
@@ -19,15 +20,6 @@ namespace {
     throw UserError(fmt::format("{}: cannot be written ({}); check the folder, its permissions and free space",
                                 file.string(), messages.reason("no reason given")));
 }
-
-/// GeoPackages carry the time of their making, unless GDAL is told one.
-class WithoutDate {
-public:
-    WithoutDate() { CPLSetThreadLocalConfigOption("OGR_CURRENT_DATE", "2000-01-01T00:00:00.000Z"); }
-    ~WithoutDate() { CPLSetThreadLocalConfigOption("OGR_CURRENT_DATE", nullptr); }
-    WithoutDate(const WithoutDate&) = delete;
-    WithoutDate& operator=(const WithoutDate&) = delete;
-};
 
 struct FieldOfLayer {
     std::string name;
@@ -183,7 +175,7 @@ void write_layers(const fs::path& gpkg, const std::string& crs_wkt, const std::v
     if (!driver) throw UserError(gpkg.string() + ": this GDAL cannot write GeoPackages; install one with SQLite");
     AtomicFile file(gpkg);
     const gdal::Messages messages;
-    const WithoutDate same_bytes;
+    const gdal::WithoutDate same_bytes;
     gdal::Dataset dataset(driver->Create(file.path().c_str(), 0, 0, 0, GDT_Unknown, nullptr));
     if (!dataset) refuse(gpkg, messages);
     for (const ShapeLayer& layer : layers) {

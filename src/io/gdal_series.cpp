@@ -7,6 +7,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "io/gdal_crs.h"
+#include "io/gdal_date.h"
 #include "io/gdal_shapes.h"
 
 namespace frana {
@@ -19,7 +20,6 @@ namespace {
 }
 
 gdal::Dataset made(const fs::path& file) {
-    gdal::register_drivers();
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
     if (!driver)
         throw UserError("GeoPackage: this GDAL cannot write it; install one with SQLite, or remove gis = true");
@@ -42,15 +42,69 @@ OGRLayer* make_layer(GDALDataset& dataset, const std::string& name, const std::s
     return good ? layer : nullptr;
 }
 
-/// Takes away what is later than `time` and, unless `itself` stays, what is of that time.
-bool forget_from(OGRLayer& layer, double time, bool itself) {
-    std::vector<GIntBig> late;
-    for (const OGRFeatureUniquePtr& feature : layer) {
-        const double t = feature->GetFieldAsDouble("t_s");
-        if (!(itself ? t <= time : t < time)) late.push_back(feature->GetFID());
+/// A file of that name with an empty layer. False when GDAL refuses.
+bool make_file(const fs::path& file, const std::string& layer, const std::string& crs_wkt, bool lines) {
+    const gdal::Dataset dataset = made(file);
+    return dataset && make_layer(*dataset, layer, crs_wkt, lines);
+}
+
+/// Has `fill` add to the layer of a file, all or nothing. False when GDAL refuses.
+template <class Fill>
+bool fill_file(const fs::path& file, const Fill& fill) {
+    const gdal::Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE));
+    OGRLayer* layer = dataset ? dataset->GetLayer(0) : nullptr;
+    if (!layer || dataset->StartTransaction() != OGRERR_NONE) return false;
+    if (fill(*layer) && dataset->CommitTransaction() == OGRERR_NONE) return true;
+    dataset->RollbackTransaction();
+    return false;
+}
+
+/// Shapes of one time, as they stand in an older file.
+using Group = std::vector<OGRFeatureUniquePtr>;
+
+bool add_group(const fs::path& file, const Group& group) {
+    return fill_file(file, [&](OGRLayer& layer) {
+        for (const OGRFeatureUniquePtr& old : group) {
+            const OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(layer.GetLayerDefn()));
+            if (feature->SetFrom(old.get()) != OGRERR_NONE || layer.CreateFeature(feature.get()) != OGRERR_NONE)
+                return false;
+        }
+        return true;
+    });
+}
+
+/// Adds to `file` what a layer has until `time`, and of that time where `itself`.
+bool copy_until(OGRLayer& from, const fs::path& file, double time, bool itself) {
+    Group group;
+    const auto time_of = [](const OGRFeatureUniquePtr& feature) { return feature->GetFieldAsDouble("t_s"); };
+    from.ResetReading();
+    for (;;) {
+        OGRFeatureUniquePtr feature(from.GetNextFeature());
+        if (feature && !(itself ? time_of(feature) <= time : time_of(feature) < time)) continue;
+        if (!group.empty() && (!feature || time_of(feature) != time_of(group.front()))) {
+            if (!add_group(file, group)) return false;
+            group.clear();
+        }
+        if (!feature) return true;
+        group.push_back(std::move(feature));
     }
-    for (const GIntBig id : late)
-        if (layer.DeleteFeature(id) != OGRERR_NONE) return false;
+}
+
+/// Takes from an older file what is later than `time` and, unless `itself` stays, what is of that time. What stays is
+/// added to a new file, a time after another, as a run adds it. So the bytes are those of a run that made only that.
+bool forget_from(const fs::path& gpkg, const std::string& crs_wkt, double time, bool itself,
+                 const gdal::Messages& messages) {
+    // Opened for changes, since what a killed run left half done has to be taken back.
+    gdal::Dataset old(GDALDataset::Open(gpkg.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE));
+    OGRLayer* layer = old ? old->GetLayer(0) : nullptr;
+    if (!layer) return false;
+    AtomicFile file(gpkg);
+    const bool lines = wkbFlatten(layer->GetGeomType()) == wkbLineString;
+    if (!make_file(file.path(), gpkg.stem().string(), crs_wkt, lines)) return false;
+    if (!copy_until(*layer, file.path(), time, itself)) return false;
+    old.reset();
+    if (messages.failed()) return false;
+    file.commit();
     return true;
 }
 
@@ -69,41 +123,31 @@ bool ShapeSeries::forget_later() {
     if (!fs::exists(gpkg_, failure)) return true;
     gdal::register_drivers();
     const gdal::Messages messages;
-    gdal::Dataset dataset(GDALDataset::Open(gpkg_.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE));
-    OGRLayer* layer = dataset ? dataset->GetLayer(0) : nullptr;
-    if (!layer || dataset->StartTransaction() != OGRERR_NONE) return false;
-    if (!forget_from(*layer, last_, true) || dataset->CommitTransaction() != OGRERR_NONE) {
-        dataset->RollbackTransaction();
-        return false;
+    const gdal::WithoutDate same_bytes;
+    try {
+        return forget_from(gpkg_, crs_wkt_, last_, true, messages);
+    } catch (const UserError&) {
+        return false;  // said by the next call, which tries it again
     }
-    dataset.reset();
-    return !messages.failed();
 }
 
 template <class Fill>
 void ShapeSeries::add(double time, bool lines, const Fill& fill) {
     std::error_code failure;
     fs::create_directories(gpkg_.parent_path(), failure);  // what goes wrong shows below
+    gdal::register_drivers();
     const gdal::Messages messages;
+    const gdal::WithoutDate same_bytes;
     if (!fs::exists(gpkg_, failure)) {
         AtomicFile file(gpkg_);
-        gdal::Dataset dataset = made(file.path());
-        if (!dataset || !make_layer(*dataset, gpkg_.stem().string(), crs_wkt_, lines)) refuse(gpkg_, messages);
-        dataset.reset();
-        if (messages.failed()) refuse(gpkg_, messages);
+        if (!make_file(file.path(), gpkg_.stem().string(), crs_wkt_, lines) || messages.failed())
+            refuse(gpkg_, messages);
         file.commit();
+    } else if (has_later_ || !begun_) {
+        if (!forget_from(gpkg_, crs_wkt_, has_later_ ? last_ : time, has_later_, messages)) refuse(gpkg_, messages);
     }
-    gdal::Dataset dataset(GDALDataset::Open(gpkg_.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE));
-    OGRLayer* layer = dataset ? dataset->GetLayer(0) : nullptr;
-    if (!layer || dataset->StartTransaction() != OGRERR_NONE) refuse(gpkg_, messages);
-    const bool clean = has_later_ ? forget_from(*layer, last_, true) : begun_ || forget_from(*layer, time, false);
-    const bool good = clean && fill(*layer) && !messages.failed();
-    if (!good || dataset->CommitTransaction() != OGRERR_NONE) {
-        dataset->RollbackTransaction();
+    if (!fill_file(gpkg_, [&](OGRLayer& layer) { return fill(layer) && !messages.failed(); }) || messages.failed())
         refuse(gpkg_, messages);
-    }
-    dataset.reset();
-    if (messages.failed()) refuse(gpkg_, messages);
     begun_ = true, has_later_ = false, last_ = time;
 }
 

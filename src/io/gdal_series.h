@@ -14,7 +14,8 @@ namespace frana {
 /// A GeoPackage with one layer that grows through a run. GeoPackage and not GeoJSON, because that standard (RFC 7946)
 /// allows longitude and latitude only. A GeoPackage has any CRS and holds all times in one file. Each call adds all its
 /// shapes or none (a transaction). The first one makes the file. From an older one it takes away what is not earlier,
-/// unless a state was restored. UserError when the disk refuses, NumericsError for a place that is not finite.
+/// unless a state was restored. The bytes depend on the shapes alone. They hold no date, and are the same after a state was
+/// restored. UserError when the disk refuses, NumericsError for a place that is not finite.
 class ShapeSeries {
 public:
     /// `crs_wkt` of the coordinates, or empty: local metres; the layer has the name of the file.

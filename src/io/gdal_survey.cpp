@@ -113,6 +113,36 @@ void refuse_elevations(const std::vector<double>& values, const fs::path& file, 
                         file.string(), highest));
 }
 
+/// The footprint of the run that a raster is from; empty where it is none's.
+fs::path footprint_of_run(const fs::path& raster) {
+    std::error_code ignored;
+    const fs::path of_run = raster.parent_path().parent_path() / "footprint.geojson";
+    const bool of_rasters = raster.parent_path().filename() == "rasters";
+    return of_rasters && fs::exists(of_run, ignored) ? of_run : fs::path();
+}
+
+/// Depths end in films that no one sees, and each counts. A mask has whole numbers, or one above 0.
+void tell_films(const std::vector<double>& values, const fs::path& file, std::vector<std::string>& log) {
+    constexpr double kThin = 0.1;  // [m]; what runs do not count either, unless output.footprint_depth is another
+    std::set<double> fractions;
+    Index above = 0, thin = 0;
+    double least = INFINITY, most = 0.0;
+    for (const double value : values) {
+        if (!(value > 0.0)) continue;
+        ++above, thin += value < kThin;
+        least = std::min(least, value), most = std::max(most, value);
+        if (fractions.size() < 2 && value != std::round(value)) fractions.insert(value);
+    }
+    if (thin == 0 || fractions.size() < 2) return;
+    const fs::path footprint = footprint_of_run(file);
+    log.push_back(fmt::format(
+        "{}: found values from {:.2g} to {:.4g} above 0, {:.3g} % of them below {:g}, and all of them count as "
+        "covered; "
+        "expected a surveyed extent, since a run counts only what is deeper than output.footprint_depth; {}",
+        file.string(), least, most, 100.0 * double(thin) / double(above), kThin,
+        footprint.empty() ? "set thin ones to 0 (gdal_calc.py)" : "give " + footprint.string() + " instead"));
+}
+
 /// The pixels above 0 as polygons in the coordinates of the terrain.
 Polygons from_mask(const fs::path& file, const std::string& crs_wkt, std::vector<std::string>& log) {
     const gdal::RasterFile raster(file, gdal::Meaning::any, log);
@@ -130,6 +160,7 @@ Polygons from_mask(const fs::path& file, const std::string& crs_wkt, std::vector
     const PixelAxis &x = raster.x_axis(), &y = raster.y_axis();
     const std::vector<double> values = raster.read(0, 0, x.count, y.count);
     refuse_elevations(values, file, log);
+    tell_films(values, file, log);
     std::vector<std::uint8_t> mask(values.size());
     for (std::size_t k = 0; k < values.size(); ++k) mask[k] = values[k] > 0.0;
     Polygons polygons;

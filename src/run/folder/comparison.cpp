@@ -228,6 +228,7 @@ std::string comparison_json(const Comparison& c) {
     json["cell"] = c.cell;
     if (c.extents) add_scores(json, c.trace, c);
     json["runout_path"] = c.path_source;
+    if (c.path_is_given) json["path"] = c.path_source;
     for (const OtherRunout& other : c.others)
         json["runout_other_releases"].push_back({{"x", other.path.front().x()},
                                                  {"y", other.path.front().y()},

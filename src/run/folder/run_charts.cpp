@@ -7,6 +7,7 @@
 
 #include "observe/table.h"
 #include "run/folder/gauge_table.h"
+#include "run/folder/run_film.h"
 #include "vtk_io/figures/chart_figure.h"
 
 namespace frana {
@@ -62,6 +63,15 @@ std::vector<std::size_t> moments(const Column& t, const std::vector<std::size_t>
     return chosen;
 }
 
+/// Tables of gauges and profiles have the flow, while maps show what has become bed as well.
+const char* depth_label(const FigureSource& source) {
+    return shows_bed(source) ? "depth of flow alone [m]" : "depth [m]";
+}
+
+std::string without_bed(const FigureSource& source) {
+    return shows_bed(source) ? ", of the flow without what has become bed" : "";
+}
+
 Column part(const Column& values, std::size_t begin, std::size_t end) {
     return Column(values.begin() + static_cast<std::ptrdiff_t>(begin),
                   values.begin() + static_cast<std::ptrdiff_t>(end));
@@ -72,7 +82,7 @@ ChartFigure profile_chart(const FigureSource& source, const std::string& name, c
     const std::vector<std::size_t> starts = outputs_of(t);
     ChartFigure figure = chart(source, "profile " + name, "distance along the line [m]");
     figure.height = std::max(source.width * 4 / 5, 300);
-    ChartPanel ground{"elevation [m]", {}, false, {}, 1.4}, depth{"depth [m]", {}, false, {}, 1.0},
+    ChartPanel ground{"elevation [m]", {}, false, {}, 1.4}, depth{depth_label(source), {}, false, {}, 1.0},
         speed{"velocity along [m/s]", {}, false, {}, 1.0};
     const Column x = part(distance, 0, starts[1]);
     ground.curves.push_back({"bed", x, part(table.column("bed"), 0, starts[1]), Curve::Kind::ground});
@@ -185,7 +195,7 @@ ChartFigure motion_chart(const FigureSource& source, const Table& history) {
 
 ChartFigure gauge_chart(const FigureSource& source) {
     ChartFigure figure = chart(source, "gauges", "time [s]");
-    ChartPanel depth{"depth [m]", {}, false, {}, 1.0}, speed{"speed [m/s]", {}, false, {}, 1.0};
+    ChartPanel depth{depth_label(source), {}, false, {}, 1.0}, speed{"speed [m/s]", {}, false, {}, 1.0};
     for (const Gauge& gauge : source.gauges) {
         const Table table = read_table(source.run_dir / "gauges" / (gauge.name + ".csv"));
         depth.curves.push_back(curve(gauge.name, table.column("t"), table.column("depth")));
@@ -271,7 +281,7 @@ bool says_nothing(const Table& table) {
 }  // namespace
 
 void add_profile(const FigureSource& source, const std::string& name, Gallery& gallery) {
-    gallery.add({fmt::format("figures/profile_{}.png", name), fmt::format("profile {}", name)},
+    gallery.add({fmt::format("figures/profile_{}.png", name), fmt::format("profile {}{}", name, without_bed(source))},
                 [&source, name](const fs::path& png, std::string& why_not) {
                     const Table table = read_table(source.run_dir / "profiles" / (name + ".csv"));
                     if (table.rows() == 0) {
@@ -284,7 +294,7 @@ void add_profile(const FigureSource& source, const std::string& name, Gallery& g
 
 void add_gauges(const FigureSource& source, Gallery& gallery) {
     if (source.gauges.empty()) return;
-    gallery.add({"figures/gauges_flow.png", "depth and speed at the gauges"},
+    gallery.add({"figures/gauges_flow.png", "depth and speed at the gauges" + without_bed(source)},
                 [&source](const fs::path& png, std::string& why_not) {
                     return render_chart(gauge_chart(source), png, why_not);
                 });

@@ -26,9 +26,6 @@ std::vector<Index> spread_frames(Index count, Index most) {
     return chosen;
 }
 
-/// Whether depth in frames stands for what has become bed too.
-bool shows_bed(const FigureSource& source) { return find_product(source.rasters, "lying_depth") != nullptr; }
-
 /// The depth of an output with the survey, without a title. What has become bed counts. Frames may show a smaller part
 /// of the terrain than the last one. UserError when the frame has none on the terrain's nodes.
 MapFigure depth_map(const FigureSource& source, Index number) {
@@ -69,6 +66,8 @@ bool draw_frames(const FigureSource& source, const std::vector<double>& times, c
 }
 
 }  // namespace
+
+bool shows_bed(const FigureSource& source) { return find_product(source.rasters, "lying_depth") != nullptr; }
 
 void add_deposit(LoadedFrame& frame) {
     if (!frame.has("depth") || !frame.has("deposited_depth")) return;

@@ -10,6 +10,9 @@ namespace frana {
 
 struct LoadedFrame;
 
+/// Whether material may become bed in the run: then maps and films of the depth show that too.
+bool shows_bed(const FigureSource& source);
+
 /// Adds what has become bed to a frame's depth, where it has any: films would show it vanish.
 void add_deposit(LoadedFrame& frame);
 
