@@ -262,7 +262,7 @@ TEST_CASE("The page of a flood tells what came in, where its front is measured f
         "[case]\ntitle = \"Flood\"\n[terrain]\ndem = \"dem.asc\"\n[[inflow]]\nname = \"torrent\"\nline = [[1050, "
         "2035], [1050, 2065]]\nvolume = 400\npeak = 80\nvelocity = 4\n[material]\ndensity = "
         "1600\n[material.bed]\nlaw = \"coulomb\"\nmu = 0.7\n[deposition]\nlaw = \"rest\"\ntime = 1\n[time]\nend = "
-        "20\n[output]\nformats = [\"vtk\", \"web\"]\n");
+        "20\n[output]\nevery = 5\nformats = [\"vtk\", \"web\"]\n");
     INFO(done.err);
     REQUIRE(done.code == 0);
     const Json record = Json::parse(text_of(slope.run_dir() / "run.json")), &budgets = record.at("budgets");

@@ -19,6 +19,7 @@ namespace {
 
 std::vector<std::string> names_of(const std::vector<Barrier>& barriers) {
     std::vector<std::string> names;
+    names.reserve(barriers.size());
     for (const Barrier& barrier : barriers) names.push_back(barrier.name);
     return names;
 }
