@@ -254,7 +254,7 @@ TEST_CASE("The surface of flow and bed does not move when mass changes sides", "
     };
     const std::vector<double> before = levels();
     erosion.wait(0.2);
-    REQUIRE(erosion.exchange(flow, 0.2, 0.0).taken > 100.0);
+    REQUIRE(erosion.exchange(flow, {0.2}).taken > 100.0);
     const std::vector<double> after = levels();
     double moved = 0.0;
     for (std::size_t n = 0; n < before.size(); ++n) moved = std::max(moved, std::abs(after[n] - before[n]));
