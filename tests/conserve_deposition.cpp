@@ -209,7 +209,7 @@ TEST_CASE("What has become bed is taken up again to the last crumb: the bed is t
     double taken = 0.0;
     for (int n = 0; n < 60; ++n) {
         still.erosion.wait(1.0);
-        taken += still.erosion.exchange(still.flow, 1.0, 0.0).taken;
+        taken += still.erosion.exchange(still.flow, {1.0}).taken;
     }
     const Status::Bed bed = still.erosion.status();
     CHECK(taken == Approx(bed.deposited).epsilon(1e-11));

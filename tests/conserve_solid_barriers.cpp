@@ -155,6 +155,30 @@ TEST_CASE("Two houses side by side take together what one barrier takes, half ea
     CHECK(pair.momentum_residual().norm() < 1e-12 * pair.status().weight_impulse.norm());
 }
 
+TEST_CASE("Houses of a row that is a mirror image of itself take together what one barrier takes, each by its breadth",
+          "[solid][barriers]") {
+    const double cell = 0.125, width = 5 * cell, first = 1.5 * cell, second = 3.5 * cell;  // they meet between nodes
+    SolidScene one = water(Turn{}, {1, width, 1}, {1.6, width, 1.4}, cell);
+    one.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}), Surface::plane({0, 0, 0}, {1, 0, 0}),
+                    Surface::plane({0, 0, 0}, {0, 1, 0}), Surface::plane({0, width, 0}, {0, -1, 0}),
+                    Surface::barrier(Prism(rectangle(1, -1, 1.6, 2), 3.0))};
+    SolidScene row = one;
+    row.surfaces.pop_back();
+    for (const auto& [from, to] : {std::pair{-1.0, first}, {first, second}, {second, 2.0}})
+        row.surfaces.push_back(Surface::barrier(Prism(rectangle(1, from, 1.6, to), 3.0)));
+    Mpm3d alone(one), three(row);
+    run_to(alone, 0.3), run_to(three, 0.3);
+    const Vec3 all = alone.body().impulse[4], south = three.body().impulse[4], middle = three.body().impulse[5],
+               north = three.body().impulse[6];
+    CAPTURE((south + middle + north).x() / all.x(), south.x() / north.x(), middle.x() / all.x());
+    CHECK((south + middle + north - all).norm() < 0.005 * all.norm());  // the tank's gate of a force
+    // 3 %: what a designer is promised of each square.
+    CHECK(south.x() == Approx(0.3 * all.x()).epsilon(0.03));
+    CHECK(middle.x() == Approx(0.4 * all.x()).epsilon(0.03));
+    CHECK(north.x() == Approx(0.3 * all.x()).epsilon(0.03));
+    CHECK(south.x() == Approx(north.x()).epsilon(0.03));
+}
+
 TEST_CASE("Not one point of a block of water gets into a wall or through, however thin the wall", "[solid][barriers]") {
     struct Blow {
         double cells, speed;  ///< thickness of the wall; of the water [m/s], whose sound runs at 22 m/s

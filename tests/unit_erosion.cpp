@@ -254,7 +254,7 @@ TEST_CASE("The surface of flow and bed does not move when mass changes sides", "
     };
     const std::vector<double> before = levels();
     erosion.wait(0.2);
-    REQUIRE(erosion.exchange(flow, 0.2, 0.0).taken > 100.0);
+    REQUIRE(erosion.exchange(flow, {0.2}).taken > 100.0);
     const std::vector<double> after = levels();
     double moved = 0.0;
     for (std::size_t n = 0; n < before.size(); ++n) moved = std::max(moved, std::abs(after[n] - before[n]));
@@ -408,6 +408,11 @@ TEST_CASE("Erosion laws give what their papers' numbers say", "[erosion]") {
     CHECK(erosion::Mechanical{0.2, 0.5}.rate(s) ==
           Approx(0.5 * std::sqrt(8.0 * 2.0 * (800.0 - 320.0) / (2000.0 - 1600.0 / 1.8))));
     CHECK(erosion::Mechanical{0.6, 0.5}.rate(s) == 0.0);
+    // r.avaflow's second model of entrainment (January 2023) for one phase, whose tan(delta_b) is mu_b - mu: the drift of
+    // the flow is 1, that of the bed 1 / (1 + rho_b / rho), and (1 / nu)^2 stands below the line.
+    const double bed_drift = 1.0 / (1.0 + 1600.0 / 2000.0), above = 8.0 * 2.0 * (2000.0 * 0.4 - 1600.0 * 0.2),
+                 below = std::pow(1.0 / 0.05, 2) * (2000.0 * 1.0 - 1600.0 * bed_drift);
+    CHECK(erosion::Mechanical{0.2, 0.05}.rate(s) == Approx(std::sqrt(above) / std::sqrt(below)).epsilon(1e-14));
 }
 
 TEST_CASE("A deposit is taken up only by more stress than the law's threshold and what the deposit bears",

@@ -130,7 +130,9 @@ TEST_CASE("Each law's growth of a slab is of second order in time", "[erosion][v
         }
         for (std::size_t n = 0; n < 2; ++n) {
             CAPTURE(one.name, n, errors[0][n], errors[1][n], errors[2][n]);
-            CHECK(std::abs(errors[1][n]) > 2.8 * std::abs(errors[2][n]));  // the second order has 4, the first 2
+            constexpr double kExact = 1e-9;  // below it, rounding and what the ends send count
+            if (std::abs(errors[1][n]) > kExact)
+                CHECK(std::abs(errors[1][n]) > 2.8 * std::abs(errors[2][n]));  // the second order has 4, the first 2
             CHECK(std::abs(errors[2][n]) < 2e-3);
         }
     }

@@ -186,7 +186,11 @@ void DepthAveraged::advance(double until) {
     if (points.left_count > 0) timed_("sort", [&] { sorter_.drop(flow_.particles, transfer_->gone(), flow_.active); });
     if (settles) timed_("erosion", [&] { settle(); });
     if (adapts) adapt_points(due, fed);
-    if (erodes) timed_("erosion", [&] { erode(dt, until - status_.time); });
+    if (erodes)
+        timed_("erosion", [&] {
+            erode({dt, velocity_dt_, until - status_.time,
+                   std::ceil((kStepsBetweenSplits - since_split_) / share - 1e-9)});
+        });
     if (settles) timed_("erosion", [&] { detrain(dt); });
     if (apart) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_velocity_dt); });
     arrive(points);
@@ -203,6 +207,7 @@ double DepthAveraged::update_nodes(double dt) {
     for (;;) {
         const double velocity_dt = 0.5 * (status_.dt + dt);  // leapfrog: velocities stand between the positions
         const GridUpdateSums sums = grid_update_->update(flow_, velocity_dt, dt);
+        velocity_dt_ = velocity_dt;
         if (!(sums.max_signal * dt > kFarther * reach)) {
             accumulate_grid_update(sums, velocity_dt);
             return dt;
@@ -284,10 +289,10 @@ bool DepthAveraged::exchange_is_due(double dt, double until, bool adapts) {
     return erosion_->is_due(dt, adapts, !(status_.after(dt, until) < until));
 }
 
-/// Points that have arrived take up bed; what they deposit then has it. In `left` [s] the state is wanted.
-void DepthAveraged::erode(double dt, double left) {
+/// Points that have arrived take up bed; what they deposit then has it.
+void DepthAveraged::erode(const Erosion::Step& step) {
     if (passages_) passages_->note(flow_);
-    const ExchangeSums sums = erosion_->exchange(flow_, dt, left);
+    const ExchangeSums sums = erosion_->exchange(flow_, step);
     if (passages_) passages_->count_moved(flow_);
     status_.bed = erosion_->status();
     drift_ += sums.max_shift;

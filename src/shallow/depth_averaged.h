@@ -119,7 +119,7 @@ private:
     void serialize_support(Archive& archive);
     void adapt_points(bool due, bool fed);
     bool exchange_is_due(double dt, double until, bool adapts);
-    void erode(double dt, double left);
+    void erode(const Erosion::Step& step);
     void detrain(double dt);
     void settle();
     void note_buried();
@@ -205,6 +205,7 @@ private:
     double footprint_depth_;
     std::array<double, 2> start_momentum_{};  ///< [kg m/s]
     double signal_ = 0.0;                     ///< largest |v| + sqrt(g_c h) seen in the last step [m/s]
+    double velocity_dt_ = 0.0;                ///< time over which the last grid update accelerated the nodes [s]
     double since_split_ = 0.0;                ///< ordinary steps since points were last split
     double drift_ = 0.0;                      ///< largest distance since the last sort [cells]
     double stress_power_ = 0.0;               ///< of the present deposit [W]

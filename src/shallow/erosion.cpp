@@ -34,73 +34,11 @@ std::vector<double> half_filter(Index passes) {
     return w;
 }
 
-/// Friction that nothing depends on: of laws without stress, when the bed brings no momentum.
-struct Unfelt {};
-
-/// The bed law under four points: that of the run, or those of the nodes nearest to them.
-template <class Friction>
-decltype(auto) law_under(const Friction& friction, const Flow& flow, const Double4& x, const Double4& y) {
-    if constexpr (std::is_same_v<Friction, LawOfEachNode>) {
-        std::array<Index, 4> k{};
-        for (int n = 0; n < 4; ++n) k[static_cast<std::size_t>(n)] = flow.grid.nearest(x[n], y[n]);
-        return LawsHere<Double4>(*flow.laws, k);
-    } else {
-        return (friction);
-    }
-}
-
 /// Nothing to take.
 ErodibleBed rock_of(const Scene& scene) {
     ErodibleBed bed;
     bed.density = scene.density;
     return bed;
-}
-
-/// What the law alone takes of the speeds of four points on the map [m/s^2]. It is over a time in which no flow changes
-/// much.
-template <class Law>
-Double4 decelerations(const Law& law, const BedStateOf<Double4>& bed, Double4 speed) {
-    constexpr double kShort = 2e-5;  // [s]; shorter, rounding would part mirror particles
-    return (speed - speeds_after(law, bed, speed, speed, kShort)) * (1.0 / kShort);
-}
-
-/// exp(x) - 1 of four x >= 0. A step's growth is small: Taylor series that are right to round-off, the next term is 1e-18
-/// of the first.
-[[gnu::always_inline]] inline Double4 growth_of_four(Double4 x) {
-    constexpr double kShortSeries = 1e-3, kSeries = 1.0 / 16;
-    const auto series = [&](int terms) {
-        Double4 sum = x * (1.0 / terms);
-        for (int n = terms - 1; n > 1; --n) sum = x * (1.0 / n) * (1.0 + sum);
-        return x * (1.0 + sum);
-    };
-    if (!any(x > kShortSeries)) return series(5);
-    Double4 sum = series(9);
-    if (any(x > kSeries))
-        for (int lane = 0; lane < 4; ++lane)
-            if (x[lane] > kSeries) sum[lane] = std::expm1(x[lane]);
-    return sum;
-}
-
-/// 1/sqrt(1 + x) of four x >= 0, where nothing else depends on it: a series that is right to round-off for what a step
-/// gains.
-[[gnu::always_inline]] inline Double4 slowed_by_half(Double4 x) {
-    constexpr double kSeries = 2e-3;  // the next term is below 2e-17
-    if (any(x > kSeries)) return sqrt(1.0 / (1.0 + x));
-    constexpr double a[] = {-1.0 / 2, 3.0 / 8, -5.0 / 16, 35.0 / 128, -63.0 / 256};
-    return 1.0 + x * (a[0] + x * (a[1] + x * (a[2] + x * (a[3] + x * a[4]))));
-}
-
-/// Shares of their masses that four points demand in a step. `middle`: to second order, for the middle of the step.
-/// `per_thickness`: of one over the flow's thickness [1/m].
-template <class Law>
-[[gnu::always_inline]] inline Double4 wanted_shares(const Law& law, const erosion::StateOf<Double4>& s,
-                                                    Double4 per_thickness, bool middle) {
-    if constexpr (Law::kProportional) {
-        const Double4 share = s.dt * law.share_rate(s);
-        return middle ? share + 0.5 * share * share : growth_of_four(share);
-    }
-    // No faster than the flow slides over the bed.
-    return min(law.rate(s), s.speed) * (s.dt * s.bed_density / s.density) * per_thickness;
 }
 
 /// Sums of four kinds at once, without loss (Knuth's sum of two).
@@ -245,31 +183,30 @@ Real Erosion::can_give(Index k) const {
     return select(read<Real>(&raised_[k]) > none, none, all);
 }
 
-/// What a point demands at once, of its mass. No bed gives so much, and round-off of more would count.
-constexpr double kMostGain = 1e3;
-/// An exchange stands for three steps or so, of which the second has its velocities. Where it would take more than a share of
-/// the flow that gains, one comes in each step.
-constexpr double kMostSteps = 2.5;
+/// An exchange stands for three steps. Where it would take more than a share of the flow that gains, one comes in each
+/// step.
+constexpr double kMostSteps = 3.0;
 constexpr double kMostShare = 0.01;
 
+/// What the last exchange took ahead tells how many steps it was to serve.
 bool Erosion::is_due(double dt, bool adapts, bool last) const {
-    return takes_ && (adapts || last || waited_ > kMostSteps * dt || share_rate_ * (waited_ + dt) > kMostShare);
+    return takes_ && (adapts || last || waited_ > 2.0 * ahead_ + 0.5 * dt || share_rate_ * (waited_ + dt) > kMostShare);
 }
 
-/// THEORY.md, section 18: the middle of what it takes at once is the middle of the last step, to which velocities belong.
-Erosion::Stretch Erosion::next_stretch(double dt, double left) {
-    const double owed = waited_ - ahead_, centred = owed - dt;
-    // After three steps halfway to what three steps go on with, or stretches would be long and short for ever.
-    const double wanted = waited_ > kMostSteps * dt ? 0.5 * (centred + dt) : centred;
-    waited_ = 0.0, ahead_ = std::max({0.0, -owed, std::min({wanted, dt, left})});
-    return {owed + ahead_, owed - ahead_};
+/// THEORY.md, section 18: what comes until the next exchange moves with the mass of the middle of that time.
+Erosion::Stretch Erosion::next_stretch(const Step& step) {
+    const double owed = waited_ - ahead_, dt = step.dt;
+    const bool each = share_rate_ * kMostSteps * dt > kMostShare;
+    const double steps = each ? 1.0 : std::min(kMostSteps, step.sorted);
+    waited_ = 0.0, ahead_ = std::max({0.0, -owed, std::min(0.5 * (steps - 1.0) * dt, step.left)});
+    return {owed + ahead_, owed, owed - 0.5 * dt, dt, step.velocity_dt};
 }
 
-ExchangeSums Erosion::exchange(Flow& flow, double dt, double left) {
+ExchangeSums Erosion::exchange(Flow& flow, const Step& step) {
     ExchangeSums all;
     constexpr double kRoundOff = 1e-12;
-    const Stretch stretch = next_stretch(dt, left);
-    if (!takes_ || !(stretch.whole > kRoundOff * dt)) return all;
+    const Stretch stretch = next_stretch(step);
+    if (!takes_ || !(stretch.whole > kRoundOff * step.dt)) return all;
     share_rate_ = 0.0;
     if (!choose(flow)) return all;
     make_room(flow);
@@ -320,156 +257,10 @@ bool Erosion::choose(const Flow& flow) {
 
 void Erosion::make_room(const Flow& flow) {
     const std::size_t count = static_cast<std::size_t>(flow.particles.count());
-    for (Array* array : {&wanted_, &missed_, &speed_, &braked_, &from_x_, &from_y_}) resize_sparingly(*array, count);
+    for (Array* array : {&wanted_, &missed_, &speed_, &braked_, &extra_x_, &extra_y_, &from_x_, &from_y_})
+        resize_sparingly(*array, count);
     const std::size_t tiles = static_cast<std::size_t>(flow.active.count());
     sums_.assign(tiles, {}), spread_to_.resize(tiles);
-}
-
-/// THEORY (72): the demand of each point, and their sum on the nodes.
-void Erosion::find_demand(Flow& flow, const Stretch& stretch) {
-    flow.particles.with_real([&](auto real) {
-        using Real = decltype(real);
-        for_each_eroding_in_turn(flow, [&](Index n) {
-            const auto demand = [&](const auto& law, const auto& friction) {
-                using Law = std::decay_t<decltype(law)>;
-                using Under = std::decay_t<decltype(friction)>;
-                if constexpr (Law::kSeesEroded || Law::kSeesLeft || Law::kSeesStress)
-                    if (deposits_) return demand_of_tile<Law, Under, Real, true>(flow, n, stretch, law, friction);
-                demand_of_tile<Law, Under, Real, false>(flow, n, stretch, law, friction);
-            };
-            const auto demand_of = [&](const auto& law) {
-                if constexpr (!std::decay_t<decltype(law)>::kSeesStress)
-                    if (momentum_ == 0.0) return demand(law, Unfelt{});
-                if (flow.laws) return demand(law, LawOfEachNode{});
-                std::visit([&](const auto& friction) { demand(law, friction); }, friction_);
-            };
-            std::visit(demand_of, law_);
-            spread<Real>(flow, n, wanted_, demand_);
-        });
-    });
-    collect_reach(flow);
-    fold(flow, demand_);
-}
-
-/// A law's input below four points besides their ground: how much was taken, and what is left. kFresh: material may have
-/// been left behind, that a law has not taken yet.
-template <class Law, bool kFresh>
-void Erosion::see_layer(const MeansOfFour& means, Double4 cosine, erosion::StateOf<Double4>& state) const {
-    if constexpr (kFresh) state.lies = per_area_of_flow_ * cosine * means.of(fresh_)[0];
-    const Double4 scale = per_area_ * cosine;
-    if constexpr (Law::kSeesEroded) {
-        const auto [initial, still] = means.of(initial_, left_);
-        state.eroded = scale * (initial - still);
-    }
-    if constexpr (Law::kSeesLeft) state.left = scale * means.of(left_)[0] + state.lies;
-}
-
-namespace {
-
-/// THEORY.md, section 20: what deposits below four points bear [Pa]: friction at rest has held them. The speed is along
-/// the map. A thin layer bears less: what lies below it is felt.
-template <class Law>
-Double4 strengths(const Law& law, const BedStateOf<Double4>& bed, Double4 speed, const erosion::StateOf<Double4>& s) {
-    constexpr double kCreep = 0.01;     // [m/s]; what of the friction grows with the speed is nothing yet
-    constexpr double kRounding = 1e-6;  // where friction does not depend on the speed, nothing is left above it
-    constexpr double kThinnest = 0.01;  // of the flow, from which on a deposit bears all
-    const Double4 one = all(1.0), held = decelerations(law, bed, min(speed, all(kCreep)));
-    const Double4 covers = min(s.lies / (kThinnest * s.thickness), one);
-    return (1.0 + kRounding) * s.density * s.thickness * bed.kappa * covers * held;
-}
-
-}  // namespace
-
-/// Moves those of four points that are chosen back by (dx, dy) [m] unless ground ends there; returns how far [cells]. Notes
-/// where all four were.
-[[gnu::always_inline]] inline Double4 Erosion::set_back(Flow& flow, Index p, int lanes, Mask4 chosen, Double4 dx,
-                                                        Double4 dy) {
-    Particles& c = flow.particles;
-    const Double4 x0 = load(&c.x[p], lanes), y0 = load(&c.y[p], lanes), none = {};
-    const double per_cell = 1.0 / flow.cell;
-    store(&from_x_[p], x0, lanes), store(&from_y_[p], y0, lanes);
-    const Double4 x = x0 - dx * per_cell, y = y0 - dy * per_cell;
-    const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
-    chosen &= (x >= 0.0) & (x <= x_max) & (y >= 0.0) & (y <= y_max);
-    if (flow.bed.has_exits)
-        for (int lane = 0; lane < lanes; ++lane)
-            if (chosen[lane] && flow.bed.exit[flow.grid.nearest(x[lane], y[lane])] != 0) chosen[lane] = 0;
-    store(&c.x[p], select(chosen, x, x0), lanes), store(&c.y[p], select(chosen, y, y0), lanes);
-    return select(chosen, max(abs(x - x0), abs(y - y0)), none);
-}
-
-/// Velocities are those of the step's momentum over the mass before it (leapfrog). In the middle of the step, where the
-/// way and the law are taken, half of the gain shares it. Such points have come too far, and are set back.
-template <class Law, class Friction, class Real, bool kFresh>
-void Erosion::demand_of_tile(Flow& flow, Index n, const Stretch& stretch, const Law& law, const Friction& friction) {
-    Particles& c = flow.particles;
-    const double dt = stretch.whole;
-    const Carried<Real>& held = c.carried<Real>();
-    constexpr bool kFeels = !std::is_same_v<Friction, Unfelt>;
-    const double slowest = std::max(kSlowest, slowest_);
-    Double4 farthest = {};
-    for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
-        const Double4 depth = load(&held.depth[p], lanes), none = {}, one = all(1.0);
-        const Double4 vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes), on_map = sqrt(vx * vx + vy * vy);
-        const Mask4 moves = (on_map > slowest) & (depth >= min_depth_) & (depth > flow.dry_depth());
-        if (!any(moves)) return store(&wanted_[p], none, lanes);
-        const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes), mass = load(&c.mass[p], lanes);
-        const MeansOfFour means(flow.grid, x, y);
-        const auto& below = law_under(friction, flow, x, y);
-        // Those that rest do as if they moved: nothing comes of it.
-        const Double4 u = select(moves, on_map, one), ux = select(moves, vx, one), uy = select(moves, vy, none);
-        const Double4 deep = select(moves, depth, one);
-        // A curved bed changes the weight alone, which only friction and laws of it use.
-        GroundOfFour ground(flow, kFeels && curved_, means, ux, uy, deep);
-        erosion::StateOf<Double4> state;
-        state.density = flow.density, state.bed_density = density_, state.dt = dt;
-        state.thickness = ground.below.thickness;
-        state.normal_gravity = ground.below.kappa * ground.below.normal_gravity;
-        see_layer<Law, kFresh>(means, ground.below.cosine, state);
-        if constexpr (Law::kSeesLeft) state.edge = sqrt(select(moves, mass / (flow.density * deep), one));
-        const Double4 per_thickness = one / state.thickness, braked_share = dt / u;
-        Double4 at_middle = one, gain = none, brake = none;  // the speed in the middle, over that at hand
-        for (const bool middle : {true, false}) {
-            if (!middle) {
-                state.thickness = ground.below.thickness *= 1.0 + 0.5 * gain;
-                at_middle = kFeels ? sqrt(speeds_left(gain, brake * braked_share)) : slowed_by_half(gain);
-            }
-            state.speed = at_middle * ground.speed;
-            if constexpr (kFeels) {
-                brake = decelerations(below, ground.below, at_middle * u);
-                state.stress = flow.density * state.thickness * ground.below.kappa * brake;
-                if constexpr (Law::kSeesStress && kFresh)
-                    if (any(state.lies > none)) state.bears = strengths(below, ground.below, at_middle * u, state);
-            }
-            gain = select(moves, min(wanted_shares(law, state, per_thickness, middle), all(kMostGain)), none);
-        }
-        store(&wanted_[p], gain * mass, lanes);
-        store(&speed_[p], ground.speed, lanes);
-        if constexpr (kFeels)
-            if (momentum_ > 0.0) store(&braked_[p], brake * braked_share, lanes);
-        const Double4 back = (1.0 - at_middle) * stretch.excess;
-        farthest = max(farthest, set_back(flow, p, lanes, gain > none, back * vx, back * vy));
-    });
-    sums_[static_cast<std::size_t>(n)].max_shift = largest(farthest);
-}
-
-/// A point that gets the share `got` < 1 of its demand was set back too far by the rest. Where it gets nothing it is
-/// where it was, to the last bit: an empty bed changes nothing.
-void Erosion::return_part(Flow& flow, Index p, double got) const {
-    Particles& c = flow.particles;
-    c.x[p] = from_x_[p] + got * (c.x[p] - from_x_[p]);
-    c.y[p] = from_y_[p] + got * (c.y[p] - from_y_[p]);
-}
-
-/// THEORY (76): the share of its velocity that a point retains when it grows by `gain` of its mass. What is taken
-/// brings at most the momentum that friction takes meanwhile, `braked` of the flow's own.
-Double4 Erosion::speeds_left(Double4 gain, Double4 braked) const {
-    const Double4 grown = 1.0 + gain;
-    if (momentum_ == 0.0) return 1.0 / grown;
-    Double4 brought = grown;
-    if (momentum_ != 1.0)
-        for (int lane = 0; lane < 4; ++lane) brought[lane] = std::pow(grown[lane], momentum_);
-    return min(brought, 1.0 + braked) / grown;
 }
 
 namespace {
@@ -681,14 +472,19 @@ void Erosion::grow(Flow& flow, Index n) {
         const Double4 share = gain / select(grows, mass, one), grown = 1.0 + share;
         const Double4 braked = momentum_ > 0.0 ? load(&braked_[p], lanes) : none;
         const Double4 factor = select(grows, speeds_left(share, braked), one);
-        for (auto* array : {&held.vx, &held.vy, &held.cxx, &held.cxy, &held.cyx, &held.cyy})
+        for (auto* array : {&held.cxx, &held.cxy, &held.cyx, &held.cyy})
             store(&(*array)[p], factor * load(&(*array)[p], lanes), lanes);
+        const Double4 wx = select(grows, load(&extra_x_[p], lanes), none),
+                      wy = select(grows, load(&extra_y_[p], lanes), none);
+        store(&held.vx[p], factor * vx + wx, lanes), store(&held.vy[p], factor * vy + wy, lanes);
         const Double4 now = mass + gain, speed = load(&speed_[p], lanes);
         store(&c.mass[p], now, lanes);
         taken += now - mass;
         gained += select(grows, mass, none);
-        px += now * load(&held.vx[p], lanes) - mass * vx, py += now * load(&held.vy[p], lanes) - mass * vy;
-        lost += select(grows, 0.5 * mass * speed * speed * (1.0 - grown * factor * factor), none);
+        const Double4 nx = load(&held.vx[p], lanes), ny = load(&held.vy[p], lanes), v2 = vx * vx + vy * vy;
+        px += now * nx - mass * vx, py += now * ny - mass * vy;
+        const Double4 slower = 1.0 - grown * (nx * nx + ny * ny) / select(v2 > none, v2, one);
+        lost += select(grows, 0.5 * mass * speed * speed * slower, none);
     });
     ExchangeSums& sums = sums_[static_cast<std::size_t>(n)];
     sums.taken = sum(taken), sums.gained = sum(gained), sums.px = sum(px), sums.py = sum(py), sums.lost = sum(lost);

@@ -36,6 +36,13 @@ public:
     /// Of a scene whose bed is erodible, or rock on which material is left behind, or out of which releases are cut.
     Erosion(const Scene& scene, Flow& flow);
 
+    /// A step, and what is known of those to come.
+    struct Step {
+        double dt;                 ///< [s]
+        double velocity_dt = 0.0;  ///< time over which its grid update accelerated the nodes; nothing: not known [s]
+        double left = 0.0;         ///< until the run ends or something else enters [s]
+        double sorted = 3.0;       ///< steps until points are sorted again
+    };
     /// A step of `dt` [s] begins.
     void wait(double dt) { waited_ += dt; }
     /// Material came that has taken nothing yet. `alone`: there was none.
@@ -46,9 +53,9 @@ public:
     /// Whether this step ends with an exchange. `adapts`: its points are sorted before they are deposited. `last`: after
     /// it the run ends, or something else enters.
     bool is_due(double dt, bool adapts, bool last) const;
-    /// Points gain, the bed loses; after the gather and the sort, before the deposit. In one step of `dt`, for all that
-    /// waited, and some that follow. `left`: until the run ends or something else enters [s].
-    ExchangeSums exchange(Flow& flow, double dt, double left);
+    /// Points gain, the bed loses; after the gather and the sort, before the deposit. In one step, for all that waited, and
+    /// some that follow.
+    ExchangeSums exchange(Flow& flow, const Step& step);
     /// In the step that `now` has ended, points that have been at rest for long enough become bed. Returns what the
     /// flow got by it, below zero, or nothing where none did. After the gather, before anything comes in or points are
     /// sorted. The caller drops those marked in gone().
@@ -87,10 +94,13 @@ private:
     struct SharedNode;
     /// Time that an exchange stands for [s].
     struct Stretch {
-        double whole;   ///< all of it
-        double excess;  ///< in which points were too fast, without what they gain, less that in which they are too slow
+        double whole;        ///< all of it
+        double owed;         ///< its part that has passed
+        double middle;       ///< that had passed in the middle of the last step
+        double step;         ///< the last step
+        double velocity_dt;  ///< Step::velocity_dt
     };
-    Stretch next_stretch(double dt, double left);
+    Stretch next_stretch(const Step& step);
     Erosion(const Scene& scene, const ErodibleBed& bed, Flow& flow);
     template <class Law, class Friction, class Real, bool kFresh>
     void demand_of_tile(Flow& flow, Index n, const Stretch& stretch, const Law& law, const Friction& friction);
@@ -106,7 +116,7 @@ private:
     void grow(Flow& flow, Index n);
 
     Double4 set_back(Flow& flow, Index p, int lanes, Mask4 chosen, Double4 dx, Double4 dy);
-    void return_part(Flow& flow, Index p, double got) const;
+    void return_part(Flow& flow, Index p, double got);
     Double4 speeds_left(Double4 gain, Double4 braked) const;
     template <class Real>
     Real there_is(Index k) const;
@@ -211,6 +221,7 @@ private:
     Array missed_;                       ///< of it, for their poorest nodes' sake; when something is scarce [kg]
     Array speed_;                        ///< along the bed [m/s]
     Array from_x_, from_y_;              ///< where points with a demand were before they were set back [cells]
+    Array extra_x_, extra_y_;            ///< what an exchange adds to velocities besides [m/s]
     Array braked_;                       ///< share of the speed that friction takes in the time of the exchange [1]
     CompensatedSum eroded_, deposited_, energy_;
     double initial_mass_ = 0.0, mass_ = 0.0, deepest_ = 0.0;

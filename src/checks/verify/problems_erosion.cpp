@@ -65,6 +65,9 @@ void add_slab(const Setup& setup, const SlabRun& run, Measurement& m) {
     worst("speed_error", std::abs(found.speed / run.exact.speed - 1.0));
     worst("thickness_error", std::abs(found.thickness / run.exact.thickness - 1.0));
     worst("travel_error", std::abs(found.way / run.exact.way - 1.0));
+    if (const auto* by_way = std::get_if<erosion::Growth>(&run.law))
+        worst("growth_error",
+              std::abs(std::log(found.thickness / run.slab.thickness) / (by_way->growth * found.way) - 1.0));
     worst("balance_error", balance_error(first, trial.simulation().status()));
     m.particles = one.particles, m.steps += one.steps, m.wall_seconds += one.wall_seconds,
     m.mass_error = one.mass_error;
@@ -262,6 +265,7 @@ std::vector<Problem> erosion_problems() {
                        {finest, "speed_error", 1e-6, "goal"},
                        {finest, "thickness_error", 1e-6, "goal"}};
     }
+    growth.gates.push_back({80, "growth_error", 1e-12, "an exponential of the points' own way"});
     Problem trench{
         "trench", "what a thin block takes of its bed on 300 m, where", {5, 10, 20, 40}, trench_residuals, run_trench};
     trench.order_of = "l1_trench";

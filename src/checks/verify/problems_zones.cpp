@@ -83,6 +83,8 @@ Measurement run_zone_block(const Setup& setup) {
     m.add("speed_error", slid.speed / zones.border_speed() - 1);
     m.add("turned_error", turned);
     m.add("cross_drift", drift, "m");
+    Measurement quarter;
+    m.add("quarter_error", slide_over(zones, setup, 90.0, quarter).stop / slid.stop - 1);
     return m;
 }
 
@@ -184,6 +186,7 @@ std::vector<Problem> zone_problems() {
     block.gates = {{100, "stop_error", 5e-4, "a tenth of a cell of 1 m"},
                    {100, "turned_error", 4e-3, "half of what a border does that lies half a cell off"},
                    {100, "speed_error", 4e-3, "first order: the block crosses the border in its own length"},
+                   {0, "quarter_error", 1e-12, "a quarter of a turn maps the grid onto itself: rounding"},
                    {0, "mass_error", 1e-13, "round-off"}};
     Problem contact{"zone_contact",
                     "halves of a layer that slide past one another, viscosity 1 to 9: the speed of the border",

@@ -1,0 +1,326 @@
+// What each point demands of its bed in an exchange (THEORY.md, section 18).
+//
+// Between exchanges a point moves as if it took nothing. Its position and velocity are those of a flight from the time up
+// to which it has taken its share, with the acceleration that the nodes have. An exchange moves that time on. It
+// integrates the growth along the flight, and the flight that begins at its end takes the place of the old one.
+#include <algorithm>
+#include <cmath>
+
+#include "law/bed/node_friction.h"
+#include "mpm/domain.h"
+#include "mpm/tile_points.h"
+#include "shallow/erosion.h"
+#include "shallow/ground_of_four.h"
+#include "shallow/sub_points_of_four.h"
+
+namespace frana {
+namespace {
+
+/// What a point demands at once, of its mass. No bed gives so much, and round-off of more would count.
+constexpr double kMostGain = 1e3;
+/// Growth in half of a stretch above which no acceleration is followed: it is no small correction any more.
+constexpr double kMostFollowed = 0.05;
+
+/// Friction that nothing depends on: of laws without stress, when the bed brings no momentum.
+struct Unfelt {};
+
+/// The bed law under four points: that of the run, or those of the nodes nearest to them.
+template <class Friction>
+decltype(auto) law_under(const Friction& friction, const Flow& flow, const Double4& x, const Double4& y) {
+    if constexpr (std::is_same_v<Friction, LawOfEachNode>) {
+        std::array<Index, 4> k{};
+        for (int n = 0; n < 4; ++n) k[static_cast<std::size_t>(n)] = flow.grid.nearest(x[n], y[n]);
+        return LawsHere<Double4>(*flow.laws, k);
+    } else {
+        return (friction);
+    }
+}
+
+/// What the law alone takes of the speeds of four points on the map [m/s^2]. It is over a time in which no flow changes
+/// much.
+template <class Law>
+Double4 decelerations(const Law& law, const BedStateOf<Double4>& bed, Double4 speed) {
+    constexpr double kShort = 2e-5;  // [s]; shorter, rounding would part mirror particles
+    return (speed - speeds_after(law, bed, speed, speed, kShort)) * (1.0 / kShort);
+}
+
+/// exp(x) - 1 of four x >= 0. A step's growth is small: Taylor series that are right to round-off, the next term is 1e-18
+/// of the first.
+[[gnu::always_inline]] inline Double4 growth_of_four(Double4 x) {
+    constexpr double kShortSeries = 1e-3, kSeries = 1.0 / 16;
+    const auto series = [&](int terms) {
+        Double4 sum = x * (1.0 / terms);
+        for (int n = terms - 1; n > 1; --n) sum = x * (1.0 / n) * (1.0 + sum);
+        return x * (1.0 + sum);
+    };
+    if (!any(x > kShortSeries)) return series(5);
+    Double4 sum = series(9);
+    if (any(x > kSeries))
+        for (int lane = 0; lane < 4; ++lane)
+            if (x[lane] > kSeries) sum[lane] = std::expm1(x[lane]);
+    return sum;
+}
+
+/// Rate at which four points grow [1/s]: of what they have, where the law is proportional to that. Otherwise of what they
+/// had at the beginning. `per_thickness`: of one over their thickness then [1/m].
+template <class Law>
+[[gnu::always_inline]] inline Double4 growth_rates(const Law& law, const erosion::StateOf<Double4>& s,
+                                                   Double4 per_thickness) {
+    if constexpr (Law::kProportional) return law.share_rate(s);
+    // No faster than the flow slides over the bed.
+    return min(law.rate(s), s.speed) * (s.bed_density / s.density) * per_thickness;
+}
+
+/// What they have gained over what they had, from the integral of that rate.
+template <class Law>
+[[gnu::always_inline]] inline Double4 gains(Double4 integral) {
+    if constexpr (Law::kProportional) return min(growth_of_four(integral), all(kMostGain));
+    return min(integral, all(kMostGain));
+}
+
+/// A vector of four points, in shares of their velocities [1] and of the acceleration of their nodes [s].
+struct InFlight {
+    Double4 own, driven;
+    InFlight operator+(const InFlight& b) const { return {own + b.own, driven + b.driven}; }
+    InFlight operator*(Double4 b) const { return {b * own, b * driven}; }
+};
+
+/// Four points since their last exchange, as if they took nothing.
+struct Flight {
+    Double4 vx, vy, ax, ay;  ///< velocities in the middle of the step [m/s], accelerations [m/s^2]
+    double middle;           ///< of the step, from the stretch's beginning [s]
+
+    /// Velocities where bed that was taken has slowed the flow by 1/s. `a`: the integral of s until then [s].
+    InFlight velocity(Double4 s, Double4 a) const {
+        const Double4 own = 1.0 / s;
+        return {own, (a - middle) * own};
+    }
+    Double4 x(const InFlight& v) const { return v.own * vx + v.driven * ax; }
+    Double4 y(const InFlight& v) const { return v.own * vy + v.driven * ay; }
+};
+
+/// What comes of a stretch.
+struct Grown {
+    Double4 gain;            ///< over what there was
+    InFlight velocity, way;  ///< at its end, and along it
+};
+
+/// Kutta's steps of third order along a flight, for a time `dt`. rate(velocity, gain, last) is the rate of growth. By
+/// 1/slowed(gain, time) bed that was taken slows the flow.
+template <class Law, class Rate, class Slowed>
+[[gnu::always_inline]] inline Grown grown_along(Flight& flight, double dt, const Rate& rate, const Slowed& slowed) {
+    const Double4 none = {}, one = all(1.0);
+    const InFlight v1 = flight.velocity(one, none);
+    const Double4 rate1 = rate(v1, none, false), x2 = (0.5 * dt) * rate1, gain2 = gains<Law>(x2),
+                  s2 = slowed(gain2, 0.5 * dt);
+    const Mask4 follows = x2 <= kMostFollowed;
+    flight.ax = select(follows, flight.ax, none), flight.ay = select(follows, flight.ay, none);
+    const InFlight v2 = flight.velocity(s2, all(0.5 * dt));
+    const Double4 rate2 = rate(v2, gain2, false), x3 = max(dt * (2.0 * rate2 - rate1), x2), gain3 = gains<Law>(x3),
+                  s3 = slowed(gain3, dt);
+    const InFlight v3 = flight.velocity(s3, dt * (2.0 * s2 - 1.0));
+    const Double4 gain = gains<Law>((dt / 6.0) * (rate1 + 4.0 * rate2 + rate(v3, gain3, true))), sixth = all(dt / 6.0);
+    return {gain, flight.velocity(slowed(gain, dt), sixth * (1.0 + 4.0 * s2 + s3)), (v1 + v2 * all(4.0) + v3) * sixth};
+}
+
+}  // namespace
+
+/// THEORY (72): the demand of each point, and their sum on the nodes.
+void Erosion::find_demand(Flow& flow, const Stretch& stretch) {
+    flow.particles.with_real([&](auto real) {
+        using Real = decltype(real);
+        for_each_eroding_in_turn(flow, [&](Index n) {
+            const auto demand = [&](const auto& law, const auto& friction) {
+                using Law = std::decay_t<decltype(law)>;
+                using Under = std::decay_t<decltype(friction)>;
+                if constexpr (Law::kSeesEroded || Law::kSeesLeft || Law::kSeesStress)
+                    if (deposits_) return demand_of_tile<Law, Under, Real, true>(flow, n, stretch, law, friction);
+                demand_of_tile<Law, Under, Real, false>(flow, n, stretch, law, friction);
+            };
+            const auto demand_of = [&](const auto& law) {
+                if constexpr (!std::decay_t<decltype(law)>::kSeesStress)
+                    if (momentum_ == 0.0) return demand(law, Unfelt{});
+                if (flow.laws) return demand(law, LawOfEachNode{});
+                std::visit([&](const auto& friction) { demand(law, friction); }, friction_);
+            };
+            std::visit(demand_of, law_);
+            spread<Real>(flow, n, wanted_, demand_);
+        });
+    });
+    collect_reach(flow);
+    fold(flow, demand_);
+}
+
+/// A law's input below four points besides their ground: how much was taken, and what is left. kFresh: material may have
+/// been left behind, that a law has not taken yet.
+template <class Law, bool kFresh>
+void Erosion::see_layer(const MeansOfFour& means, Double4 cosine, erosion::StateOf<Double4>& state) const {
+    if constexpr (kFresh) state.lies = per_area_of_flow_ * cosine * means.of(fresh_)[0];
+    const Double4 scale = per_area_ * cosine;
+    if constexpr (Law::kSeesEroded) {
+        const auto [initial, still] = means.of(initial_, left_);
+        state.eroded = scale * (initial - still);
+    }
+    if constexpr (Law::kSeesLeft) state.left = scale * means.of(left_)[0] + state.lies;
+}
+
+namespace {
+
+/// THEORY.md, section 20: what deposits below four points bear [Pa]: friction at rest has held them. The speed is along
+/// the map. A thin layer bears less: what lies below it is felt.
+template <class Law>
+Double4 strengths(const Law& law, const BedStateOf<Double4>& bed, Double4 speed, const erosion::StateOf<Double4>& s) {
+    constexpr double kCreep = 0.01;     // [m/s]; what of the friction grows with the speed is nothing yet
+    constexpr double kRounding = 1e-6;  // where friction does not depend on the speed, nothing is left above it
+    constexpr double kThinnest = 0.01;  // of the flow, from which on a deposit bears all
+    const Double4 one = all(1.0), held = decelerations(law, bed, min(speed, all(kCreep)));
+    const Double4 covers = min(s.lies / (kThinnest * s.thickness), one);
+    return (1.0 + kRounding) * s.density * s.thickness * bed.kappa * covers * held;
+}
+
+/// What the four nodes around a point have gained of velocity in the last grid update, by linear weights: two sums, of x and
+/// of y. Nodes without mass count as not accelerated, so that nothing is read that the step has not written.
+[[gnu::always_inline]] inline Double4 gained_velocity(const Flow& flow, Index k, double x, double y) {
+    const Index up = k + flow.grid.stride();
+    const std::uint8_t* const f = flow.nodes.flags.data();
+    const auto weight = [&](Index node, double w) { return f[node] & kMoving ? w : 0.0; };
+    const double a = weight(k, (1.0 - x) * (1.0 - y)), b = weight(k + 1, x * (1.0 - y)), c = weight(up, (1.0 - x) * y),
+                 d = weight(up + 1, x * y);
+    const Motion* const now = flow.nodes.motions();
+    const Double4 then =
+        Double4{a, a, b, b} * load(&flow.nodes.before[k]) + Double4{c, c, d, d} * load(&flow.nodes.before[up]);
+    const Double4 after = (a * load(now + k) + b * load(now + k + 1)) + (c * load(now + up) + d * load(now + up + 1));
+    return Double4{after[0] - (then[0] + then[2]), after[1] - (then[1] + then[3]), 0.0, 0.0};
+}
+
+/// The nodes' acceleration, no more than changes the speed by three quarters. Points that have come farther than a cell have
+/// none: the nodes around them may not be those that moved them.
+template <class Stretch>
+void accelerate(Flight& f, const Flow& flow, const Stretch& stretch, Double4 x, Double4 y, Double4 speed, int lanes) {
+    const double per_second = 1.0 / stretch.velocity_dt;
+    const Int4 i = floor_positive(x + kTile), j = floor_positive(y + kTile);
+    for (int lane = 0; lane < lanes; ++lane) {
+        const Double4 gained = gained_velocity(flow, j[lane] * flow.grid.stride() + i[lane],
+                                               x[lane] + kTile - static_cast<double>(i[lane]),
+                                               y[lane] + kTile - static_cast<double>(j[lane]));
+        f.ax[lane] = per_second * gained[0], f.ay[lane] = per_second * gained[1];
+    }
+    const double reach = std::max(std::abs(stretch.middle), std::abs(stretch.whole - stretch.middle));
+    const Double4 none = {}, size = reach * sqrt(f.ax * f.ax + f.ay * f.ay), most = 0.75 * speed;
+    const Double4 share = select(size > most, most / select(size > most, size, all(1.0)), all(1.0));
+    const Mask4 near = speed * stretch.step <= flow.cell;
+    f.ax = select(near, share * f.ax, none), f.ay = select(near, share * f.ay, none);
+}
+
+/// From the place that a flight has come to when the step ends to that of the flight that takes its place.
+template <class Stretch>
+[[gnu::always_inline]] inline InFlight shift(const Grown& grown, const Stretch& stretch) {
+    const double owed = stretch.owed, left = stretch.whole - owed;
+    const InFlight &way = grown.way, &v = grown.velocity;
+    return {way.own - left * v.own - owed,
+            way.driven - left * v.driven + (0.5 * left * left + stretch.middle * owed - 0.5 * owed * owed)};
+}
+
+}  // namespace
+
+/// Moves those of four points that are chosen back by (dx, dy) [m] unless ground ends there; returns how far [cells]. Notes
+/// where all four were.
+[[gnu::always_inline]] inline Double4 Erosion::set_back(Flow& flow, Index p, int lanes, Mask4 chosen, Double4 dx,
+                                                        Double4 dy) {
+    Particles& c = flow.particles;
+    const Double4 x0 = load(&c.x[p], lanes), y0 = load(&c.y[p], lanes), none = {};
+    const double per_cell = 1.0 / flow.cell;
+    store(&from_x_[p], x0, lanes), store(&from_y_[p], y0, lanes);
+    const Double4 x = x0 - dx * per_cell, y = y0 - dy * per_cell;
+    const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
+    chosen &= (x >= 0.0) & (x <= x_max) & (y >= 0.0) & (y <= y_max);
+    if (flow.bed.has_exits)
+        for (int lane = 0; lane < lanes; ++lane)
+            if (chosen[lane] && flow.bed.exit[flow.grid.nearest(x[lane], y[lane])] != 0) chosen[lane] = 0;
+    store(&c.x[p], select(chosen, x, x0), lanes), store(&c.y[p], select(chosen, y, y0), lanes);
+    return select(chosen, max(abs(x - x0), abs(y - y0)), none);
+}
+
+/// THEORY.md, section 18: growth along the flight since the last exchange, and the flight that begins where it ends.
+template <class Law, class Friction, class Real, bool kFresh>
+void Erosion::demand_of_tile(Flow& flow, Index n, const Stretch& stretch, const Law& law, const Friction& friction) {
+    Particles& c = flow.particles;
+    const double dt = stretch.whole;
+    const Carried<Real>& held = c.carried<Real>();
+    constexpr bool kFeels = !std::is_same_v<Friction, Unfelt>;
+    const double slowest = std::max(kSlowest, slowest_);
+    Double4 farthest = {};
+    for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
+        const Double4 depth = load(&held.depth[p], lanes), none = {}, one = all(1.0);
+        const Double4 vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes), on_map = sqrt(vx * vx + vy * vy);
+        const Mask4 moves = (on_map > slowest) & (depth >= min_depth_) & (depth > flow.dry_depth());
+        if (!any(moves)) return store(&wanted_[p], none, lanes);
+        const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes), mass = load(&c.mass[p], lanes);
+        const MeansOfFour means(flow.grid, x, y);
+        const auto& below = law_under(friction, flow, x, y);
+        // Those that rest do as if they moved: nothing comes of it.
+        const Double4 u = select(moves, on_map, one), ux = select(moves, vx, one), uy = select(moves, vy, none);
+        const Double4 deep = select(moves, depth, one);
+        // A curved bed changes the weight alone, which only friction and laws of it use.
+        GroundOfFour ground(flow, kFeels && curved_, means, ux, uy, deep);
+        erosion::StateOf<Double4> state;
+        state.density = flow.density, state.bed_density = density_, state.dt = dt;
+        const Double4 thickness = ground.below.thickness, per_thickness = one / thickness;
+        state.normal_gravity = ground.below.kappa * ground.below.normal_gravity;
+        see_layer<Law, kFresh>(means, ground.below.cosine, state);
+        if constexpr (Law::kSeesLeft) state.edge = sqrt(select(moves, mass / (flow.density * deep), one));
+        Flight flight{ux, uy, none, none, stretch.middle};
+        if (stretch.velocity_dt > 0.0) accelerate(flight, flow, stretch, x, y, u, lanes);
+        const Double4 along = ground.speed / u;
+        Double4 brake = none;  // in the middle of the stretch at last
+        const auto rate = [&](const InFlight& v, Double4 gain, bool last) {
+            const Double4 speed = sqrt(flight.x(v) * flight.x(v) + flight.y(v) * flight.y(v));
+            state.speed = along * speed;
+            state.thickness = ground.below.thickness = thickness * (1.0 + gain);
+            if constexpr (kFeels) {
+                const Double4 felt = decelerations(below, ground.below, speed);
+                if (!last) brake = felt;
+                state.stress = flow.density * state.thickness * ground.below.kappa * felt;
+                if constexpr (Law::kSeesStress && kFresh)
+                    if (any(state.lies > none)) state.bears = strengths(below, ground.below, speed, state);
+            }
+            return min(growth_rates(law, state, per_thickness), all(kMostGain / dt));
+        };
+        const auto slowed = [&](Double4 gain, double time) {
+            return momentum_ > 0.0 ? one / speeds_left(gain, brake * (time / u)) : one + gain;
+        };
+        const Grown grown = grown_along<Law>(flight, dt, rate, slowed);
+        const Mask4 grows = moves & (grown.gain > none);
+        store(&wanted_[p], select(grows, grown.gain * mass, none), lanes);
+        store(&speed_[p], ground.speed, lanes);
+        if constexpr (kFeels)
+            if (momentum_ > 0.0) store(&braked_[p], brake * (dt / u), lanes);
+        const InFlight v = grown.velocity, later = shift(grown, stretch);
+        const Double4 extra = select(grows, v.driven - (dt - flight.middle), none);
+        store(&extra_x_[p], extra * flight.ax, lanes), store(&extra_y_[p], extra * flight.ay, lanes);
+        farthest = max(farthest, set_back(flow, p, lanes, grows, -flight.x(later), -flight.y(later)));
+    });
+    sums_[static_cast<std::size_t>(n)].max_shift = largest(farthest);
+}
+
+/// A point that gets the share `got` < 1 of its demand was set back too far by the rest. Where it gets nothing it is
+/// where it was, to the last bit: an empty bed changes nothing.
+void Erosion::return_part(Flow& flow, Index p, double got) {
+    Particles& c = flow.particles;
+    extra_x_[p] *= got, extra_y_[p] *= got;
+    c.x[p] = from_x_[p] + got * (c.x[p] - from_x_[p]);
+    c.y[p] = from_y_[p] + got * (c.y[p] - from_y_[p]);
+}
+
+/// THEORY (76): the share of its velocity that a point retains when it grows by `gain` of its mass. What is taken
+/// brings at most the momentum that friction takes meanwhile, `braked` of the flow's own.
+Double4 Erosion::speeds_left(Double4 gain, Double4 braked) const {
+    const Double4 grown = 1.0 + gain;
+    if (momentum_ == 0.0) return 1.0 / grown;
+    Double4 brought = grown;
+    if (momentum_ != 1.0)
+        for (int lane = 0; lane < 4; ++lane) brought[lane] = std::pow(grown[lane], momentum_);
+    return min(brought, 1.0 + braked) / grown;
+}
+
+}  // namespace frana
