@@ -6,15 +6,10 @@
 #include <cmath>
 #include <sstream>
 
+#include "ensemble/toml_file.h"
 #include "scene/parameters.h"
 
 namespace frana {
-namespace {
-
-int line_in(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
-
-}  // namespace
-
 std::string listed(const std::vector<std::string>& words) {
     std::string text;
     for (std::size_t k = 0; k < words.size(); ++k)

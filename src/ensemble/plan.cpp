@@ -20,8 +20,6 @@
 namespace frana {
 namespace {
 
-int line_in(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
-
 class Reader {
 public:
     Reader(EnsemblePlan& plan, Problems& problems) : plan_(plan), problems_(problems) {}

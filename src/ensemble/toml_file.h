@@ -10,6 +10,9 @@
 
 namespace frana {
 
+/// Its first line there.
+inline int line_in(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
+
 /// Throws UserError when it cannot be read.
 std::string text_of_file(const std::filesystem::path& file);
 

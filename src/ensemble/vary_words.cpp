@@ -10,11 +10,11 @@
 namespace frana {
 namespace {
 
-using Shape = Distribution::Kind;
+using Form = Distribution::Kind;
 
 /// Of a normal or lognormal one; "" where it has none.
 std::string cut_of(const Distribution& of, const std::string& unit) {
-    const bool below = std::isfinite(of.low) && !(of.kind == Shape::lognormal && of.low == 0.0);
+    const bool below = std::isfinite(of.low) && !(of.kind == Form::lognormal && of.low == 0.0);
     if (below && std::isfinite(of.high)) return fmt::format(", cut to {:g} to {:g}{}", of.low, of.high, unit);
     if (below) return fmt::format(", cut below {:g}{}", of.low, unit);
     return std::isfinite(of.high) ? fmt::format(", cut above {:g}{}", of.high, unit) : "";
@@ -33,20 +33,20 @@ std::string shape_of(const Vary& vary, const std::string& unit) {
     const Distribution& of = vary.distribution;
     const std::string range = fmt::format("{:g} to {:g}{}", of.low, of.high, unit);
     switch (of.kind) {
-        case Shape::uniform:
+        case Form::uniform:
             return "uniform, " + range;
-        case Shape::loguniform:
+        case Form::loguniform:
             return "loguniform, " + range;
-        case Shape::normal:
+        case Form::normal:
             return fmt::format("normal, mean {0:g}{2}, standard deviation {1:g}{2}", of.middle, of.spread, unit) +
                    cut_of(of, unit);
-        case Shape::lognormal:
+        case Form::lognormal:
             return fmt::format("lognormal, median {:g}{}, factor {:g}", of.middle, unit, of.spread) + cut_of(of, unit);
-        case Shape::triangular:
+        case Form::triangular:
             return fmt::format("triangular, {}, most likely {:g}{}", range, of.middle, unit);
-        case Shape::beta:
+        case Form::beta:
             return fmt::format("beta, {}, alpha {:g}, beta {:g}", range, of.alpha, of.beta);
-        case Shape::discrete:
+        case Form::discrete:
             return choices_of(vary, unit);
     }
     return "";
@@ -57,7 +57,7 @@ std::string shape_of(const Vary& vary, const std::string& unit) {
 std::string words_of(const Vary& vary) {
     const Parameter* parameter = find_parameter(vary.key);
     const std::string words = shape_of(vary, parameter ? after_number(parameter->unit) : "");
-    const bool levels = vary.levels > 0 && vary.distribution.kind != Shape::discrete;
+    const bool levels = vary.levels > 0 && vary.distribution.kind != Form::discrete;
     return levels ? fmt::format("{}, on {} levels", words, vary.levels) : words;
 }
 

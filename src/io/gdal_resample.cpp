@@ -11,8 +11,8 @@ namespace {
 
 // Shifts and overlaps below this share of a pixel are the round-off of map coordinates. These are 1e7 m in doubles,
 // over pixels down to 1 cm. They move no elevation by more than a millionth of the difference between two pixels.
-constexpr double round_off = 1e-6;
-constexpr double least_share = 0.5 - round_off;
+constexpr double kPlaceRoundOff = 1e-6;
+constexpr double least_share = 0.5 - kPlaceRoundOff;
 constexpr Index strip_pixels = Index(1) << 23;  // 64 MiB of doubles
 
 /// Collects weights by pixel index, which may lie outside the pixels.
@@ -58,7 +58,7 @@ NodeWeights merged(const Tally& fine, const Tally& plain, const Tally& moment) {
     for (const double w : plain.weights()) sum += w;
     for (const Tally* tally : tallies)
         for (std::size_t k = 0; k < tally->weights().size(); ++k)
-            if (std::abs(tally->weights()[k]) > round_off * sum) {
+            if (std::abs(tally->weights()[k]) > kPlaceRoundOff * sum) {
                 const Index at = tally->first() + Index(k);
                 first = std::min(first, at);
                 end = std::max(end, at + 1);
@@ -86,8 +86,8 @@ NodeWeights mean_weights(Index count, double a, double b) {
     a = std::max(a, 0.0);
     b = std::min(b, double(count));
     Tally fine(count), plain(count), moment(count);
-    const auto first = std::clamp<Index>(Index(std::floor(a + round_off)), 0, count - 1);
-    const auto last = std::clamp<Index>(Index(std::ceil(b - round_off)) - 1, 0, count - 1);
+    const auto first = std::clamp<Index>(Index(std::floor(a + kPlaceRoundOff)), 0, count - 1);
+    const auto last = std::clamp<Index>(Index(std::ceil(b - kPlaceRoundOff)) - 1, 0, count - 1);
     for (Index k = first; k <= last; ++k) {
         const double from = k == first ? a : double(k), to = k == last ? b : double(k + 1);
         const double u0 = from - double(k) - 0.5, u1 = to - double(k) - 0.5;
@@ -103,7 +103,7 @@ NodeWeights mean_weights(Index count, double a, double b) {
 
 /// Cubic convolution at `u`, in pixels from the centre of pixel 0.
 NodeWeights cubic_weights(Index count, double u) {
-    const double floor = std::floor(u + round_off), f = std::max(0.0, u - floor), g = 1.0 - f;
+    const double floor = std::floor(u + kPlaceRoundOff), f = std::max(0.0, u - floor), g = 1.0 - f;
     const auto k = Index(floor);
     Tally fine(count), plain(count), moment(count);
     moment.add_clamped(k, 0.0);
@@ -255,7 +255,7 @@ std::vector<NodeWeights> axis_weights(const PixelAxis& pixels, double x0, double
         const double inside = std::min(b, double(pixels.count)) - std::max(a, 0.0);
         if (inside < least_share * ratio) continue;
         nodes[std::size_t(i)] =
-            ratio > 1.0 - round_off ? mean_weights(pixels.count, a, b) : cubic_weights(pixels.count, centre - 0.5);
+            ratio > 1.0 - kPlaceRoundOff ? mean_weights(pixels.count, a, b) : cubic_weights(pixels.count, centre - 0.5);
     }
     return nodes;
 }

@@ -29,7 +29,7 @@ constexpr double kRise = 0.1;  ///< of a triangle's time, until it is highest
 const char* const kHeader =
     "expected a header such as \"t [s], discharge [m3/s]\" or \"t_min, discharge [m3/s], velocity [m/s]\"";
 
-std::string trimmed(const std::string& text) {
+std::string without_quotes(const std::string& text) {
     const std::size_t begin = text.find_first_not_of(" \t\r\"");
     return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(" \t\r\"") + 1 - begin);
 }
@@ -40,7 +40,8 @@ std::vector<std::string> cells_of(const std::string& line) {
     std::vector<std::string> cells;
     std::istringstream stream(line);
     std::string cell;
-    while (mark == ' ' ? bool(stream >> cell) : bool(std::getline(stream, cell, mark))) cells.push_back(trimmed(cell));
+    while (mark == ' ' ? bool(stream >> cell) : bool(std::getline(stream, cell, mark)))
+        cells.push_back(without_quotes(cell));
     if (mark != ' ' && !line.empty() && line[line.find_last_not_of(" \t\r")] == mark) cells.emplace_back();
     return cells;
 }
@@ -64,9 +65,10 @@ struct Column {
 
 Column column_of(const std::string& heading, const std::string& source) {
     const std::size_t bracket = heading.find('[');
-    const std::string name = trimmed(heading.substr(0, bracket));
-    const std::string unit =
-        bracket == std::string::npos ? "" : trimmed(heading.substr(bracket + 1, heading.find(']') - bracket - 1));
+    const std::string name = without_quotes(heading.substr(0, bracket));
+    const std::string unit = bracket == std::string::npos
+                                 ? ""
+                                 : without_quotes(heading.substr(bracket + 1, heading.find(']') - bracket - 1));
     const bool time = name == "t" || name == "time";
     if (name == "t_min" || (time && unit == "min")) return {Column::What::time, 60.0};
     if (name == "t_h" || (time && unit == "h")) return {Column::What::time, 3600.0};
@@ -143,7 +145,7 @@ public:
     bool next() {
         while (std::getline(stream_, line_)) {
             ++number_;
-            if (!trimmed(line_).empty() && trimmed(line_)[0] != '#') return true;
+            if (!without_quotes(line_).empty() && without_quotes(line_)[0] != '#') return true;
         }
         return false;
     }
@@ -155,8 +157,9 @@ public:
         if (cells.size() == columns) return cells;
         const bool gap = cells.size() < columns;
         throw UserError(fmt::format("{}:{}: found {}, \"{}\"; expected {} columns as in the first line; {}", source,
-                                    number_, gap ? "a gap" : fmt::format("{} columns", cells.size()), trimmed(line_),
-                                    columns, gap ? "fill it, or remove the row" : "correct the row"));
+                                    number_, gap ? "a gap" : fmt::format("{} columns", cells.size()),
+                                    without_quotes(line_), columns,
+                                    gap ? "fill it, or remove the row" : "correct the row"));
     }
 
 private:

@@ -15,7 +15,7 @@ constexpr const char* manning = "material.bed.manning_n";
 constexpr const char* density = "material.density";
 constexpr const char* yield = "material.rheology.yield_stress";
 constexpr const char* viscosity = "material.rheology.viscosity";
-constexpr const char* salm =
+constexpr const char* salm_guide =
     "Voellmy-Salm classes, raster tool of the Norwegian Geotechnical Institute "
     "(norwegian-geotechnical-institute/Avaframe-Workshop)";
 constexpr const char* martinelli = "Martinelli, Lang and Mears 1980, J. Glaciol.";
@@ -40,8 +40,8 @@ const std::vector<MassKind>& mass_kinds() {
 
 const std::vector<ParameterRange>& parameter_ranges() {
     static const std::vector<ParameterRange> table = {
-        {"snow", mu, "voellmy", 0.14, 0.47, "all sizes, grounds, altitudes and return periods", salm},
-        {"snow", xi, "voellmy", 900.0, 4000.0, "all sizes, grounds and altitudes", salm},
+        {"snow", mu, "voellmy", 0.14, 0.47, "all sizes, grounds, altitudes and return periods", salm_guide},
+        {"snow", xi, "voellmy", 900.0, 4000.0, "all sizes, grounds and altitudes", salm_guide},
         {"snow", mu, "voellmy", 0.155, 0.155, "ten very long run-outs, for zoning",
          "Buser and Frutiger 1980, J. Glaciol."},
         {"snow", xi, "voellmy", 1120.0, 1120.0, "ten very long run-outs, for zoning",

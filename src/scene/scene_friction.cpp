@@ -204,7 +204,7 @@ std::vector<FrictionPart> parts_of(const CaseFile& file, const ZoneNodes& zones,
 }
 
 /// Storage number of the node nearest to a place.
-std::size_t nearest_node(const GridGeometry& g, const Vec2& place) {
+std::size_t place_of_nearest(const GridGeometry& g, const Vec2& place) {
     const auto node = [&](double at, Index count) {
         return static_cast<Index>(std::clamp(std::floor(at / g.cell + 0.5), 0.0, static_cast<double>(count - 1)));
     };
@@ -258,12 +258,12 @@ void read_friction(const CaseFile& file, const GisReader& reader, double release
 
 BedLaw bed_law_at(const Scene& scene, const Vec2& place) {
     const bed::LawMap* laws = scene.bed_laws();
-    return laws ? laws->at(nearest_node(scene.bed.geometry, place)) : scene.bed_law;
+    return laws ? laws->at(place_of_nearest(scene.bed.geometry, place)) : scene.bed_law;
 }
 
 WaterFriction water_friction_at(const Scene& scene, const Vec2& place, const WaterFriction& everywhere) {
     const WaterLawMap* laws = scene.water_laws();
-    return laws ? water_friction(laws->at(nearest_node(scene.bed.geometry, place))) : everywhere;
+    return laws ? water_friction(laws->at(place_of_nearest(scene.bed.geometry, place))) : everywhere;
 }
 
 std::string friction_sentence(const FrictionPart& part) {

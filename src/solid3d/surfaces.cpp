@@ -85,14 +85,14 @@ Hidden behind(const std::vector<Surface>& surfaces, double seam) {
         });
     };
 }
-constexpr double kSeam = 1e-6;  // [cells]: round-off of places
+constexpr double kPlaceSeam = 1e-6;  // [cells]: round-off of places
 
 }  // namespace
 
 MetFaces faces_at_edge(const std::vector<Surface>& surfaces, const Surface& barrier, const Vec3& x, double cell,
                        Contact* list, int count) {
     if (barrier.kind == Surface::Kind::prism) return barrier.prism->faces_at_edge(x, cell, list, count);
-    return faces_at_edge(*barrier.shape, x, cell, behind(surfaces, kSeam * cell), list, count);
+    return faces_at_edge(*barrier.shape, x, cell, behind(surfaces, kPlaceSeam * cell), list, count);
 }
 
 bool enters(const Surface& barrier, const Vec3& from, const Vec3& to, Entry& entry) {
@@ -212,7 +212,7 @@ double thickness(const std::vector<Surface>& surfaces, const Surface& barrier, c
                  double cell) {
     const double thick = thickness(barrier, from, way);
     const bool hidden = barrier.kind == Surface::Kind::shape && std::isfinite(thick) &&
-                        behind(surfaces, kSeam * cell)(from + thick * way, way);
+                        behind(surfaces, kPlaceSeam * cell)(from + thick * way, way);
     return hidden ? std::numeric_limits<double>::infinity() : thick;
 }
 
@@ -223,7 +223,7 @@ double mirror_share(const std::vector<Surface>& surfaces, const Surface& barrier
     const Vec3 place = x - 2.0 * contact.distance * contact.normal;
     return barrier.kind == Surface::Kind::prism
                ? barrier.prism->mirror_share(contact, place, kBlend * cell)
-               : mirror_share(*barrier.shape, x, contact, place, kBlend * cell, behind(surfaces, kSeam * cell));
+               : mirror_share(*barrier.shape, x, contact, place, kBlend * cell, behind(surfaces, kPlaceSeam * cell));
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 namespace frana::bench {
 namespace {
 
-constexpr double kCell = 0.5, kDensity = 1500.0, kSoundSpeed = 40.0, kSpeed = 4.0;
-constexpr Index kRoom = 12;  ///< free cells around the block
+constexpr double kBodyCell = 0.5, kDensity = 1500.0, kSoundSpeed = 40.0, kSpeed = 4.0;
+constexpr Index kFreeCells = 12;  ///< free cells around the block
 
 SolidLaw law_of(BodyLaw law) {
     const double bulk = kDensity * kSoundSpeed * kSoundSpeed;
@@ -47,19 +47,19 @@ SolidScene body_scene(BodyLaw law, Index particles) {
     scene.law = law_of(law);
     scene.density = kDensity;
     scene.flip = law == BodyLaw::drucker_prager;  // as stages have sand
-    scene.blending = std::sqrt(kCell / 9.81);
-    scene.grid.cell = kCell;
-    const double room = kCell * static_cast<double>(kRoom);
+    scene.blending = std::sqrt(kBodyCell / 9.81);
+    scene.grid.cell = kBodyCell;
+    const double room = kBodyCell * static_cast<double>(kFreeCells);
     scene.grid.origin = {-room, -room, -0.5 * room};
-    scene.grid.nodes = {2 * half + 2 * kRoom + 1, 2 * half + 2 * kRoom + 1, half + kRoom + 1};
+    scene.grid.nodes = {2 * half + 2 * kFreeCells + 1, 2 * half + 2 * kFreeCells + 1, half + kFreeCells + 1};
     scene.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}, Hold::free, 0.3)};
-    const double spacing = 0.5 * kCell, mass = kDensity * spacing * spacing * spacing;
+    const double spacing = 0.5 * kBodyCell, mass = kDensity * spacing * spacing * spacing;
     for (Index k = 0; k < 2 * half; ++k)
         for (Index j = 0; j < 4 * half; ++j)
             for (Index i = 0; i < 4 * half; ++i) {
                 const Vec3 x = spacing * Vec3(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5,
                                               static_cast<double>(k) + 0.5);
-                const double deeper = kCell * static_cast<double>(half) - x.z();
+                const double deeper = kBodyCell * static_cast<double>(half) - x.z();
                 scene.points.add(x, {kSpeed, 0.25 * kSpeed, 0.0}, mass, kDensity * 9.81 * deeper);
             }
     return scene;

@@ -13,8 +13,6 @@
 namespace frana::fuzz {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
-
 /// What the bed's curvature is against the scheme's steps and the flow's depth; zero on gentle terrain, which has none.
 struct Bends {
     double unresolved = 0.0;  ///< largest change of slope from node to node that the Hessian does not account for [1]
@@ -213,7 +211,8 @@ void learn_particles(const Scene& scene, const Flow& flow, Facts& facts) {
     if (scene.still_surface) {
         facts.lake = true;
         facts.level_error = off_level(flow, *scene.still_surface);
-        facts.level_round_off = 16.0 * kEps * (std::abs(*scene.still_surface) + facts.release_depth);
+        facts.level_round_off =
+            16.0 * std::numeric_limits<double>::epsilon() * (std::abs(*scene.still_surface) + facts.release_depth);
     }
     const Transfer transfer = scene.scheme.transfer;
     facts.affine = transfer == Transfer::tpic || transfer == Transfer::apic;

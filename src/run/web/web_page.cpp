@@ -17,9 +17,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr Index kMostTerrain = 500'000;   // nodes of the surface: more make no smoother picture
-constexpr Index kMostPixels = 1'000'000;  // of a drape
-constexpr std::size_t kMostPoints = 600;  // of a curve
+constexpr Index kMostTerrain = 500'000;      // nodes of the surface: more make no smoother picture
+constexpr Index kMostOfPicture = 1'000'000;  // of a drape
+constexpr std::size_t kMostPoints = 600;     // of a curve
 
 /// The places of a page are told from the terrain's south-west node, to a thousandth of a cell.
 class Places {
@@ -74,7 +74,7 @@ Json drapes_json(const WebPage& page, const Places& places, std::vector<std::str
     Index coarsest = 1;
     for (const PageDrape& drape : page.drapes) {
         const Raster whole = part_with_values(drape.raster);
-        const Index k = block_for(whole.geometry, kMostPixels);
+        const Index k = block_for(whole.geometry, kMostOfPicture);
         coarsest = std::max(coarsest, k);
         Json json = raster_json(largest_in_blocks(whole, k), 1e-4 * (drape.high - drape.low), places);
         json["name"] = drape.name, json["label"] = drape.label, json["unit"] = drape.unit;

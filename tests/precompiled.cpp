@@ -1,0 +1,1 @@
+// Nothing: the library of this file has the precompiled headers of the tests.
