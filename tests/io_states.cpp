@@ -362,7 +362,7 @@ TEST_CASE("the surfaces of a profile are drawn from the bed at the start, which 
 
 namespace {
 
-/// A table with another number in the row of a time.
+/// A table with another number at a time: in its row, or in those of the steps before and after it.
 void set_value(const fs::path& csv, const std::string& column, double time, double value) {
     Table table = read_table(csv);
     const auto at = std::find(table.columns.begin(), table.columns.end(), column) - table.columns.begin();
@@ -373,7 +373,9 @@ void set_value(const fs::path& csv, const std::string& column, double time, doub
     const std::vector<double> t = table.column("t");
     bool found = false;
     for (std::size_t row = 0; row < t.size(); ++row) {
-        const bool here = std::abs(t[row] - time) < 1e-9;
+        const bool after = row > 0 && t[row] > time && t[row - 1] < time - 1e-9,
+                   before = row + 1 < t.size() && t[row] < time && t[row + 1] > time + 1e-9,
+                   here = std::abs(t[row] - time) < 1e-9 || after || before;
         found |= here;
         if (here) table.values[static_cast<std::size_t>(at)][row] = value;
         for (std::size_t c = 0; c < table.columns.size(); ++c) {

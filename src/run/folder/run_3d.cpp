@@ -200,8 +200,14 @@ std::optional<double> ToldForces::at(std::size_t barrier, double time) const {
     const std::vector<double>& t = table->column("t");
     const double near = 1e-9 * std::max(1.0, time);  // texts of a time differ in their last digits
     const auto row = std::lower_bound(t.begin(), t.end(), time - near);
-    if (row == t.end() || std::abs(*row - time) > near) return {};
-    const double force = table->column("mean_force")[static_cast<std::size_t>(row - t.begin())];
+    if (row == t.end()) return {};
+    const auto after = static_cast<std::size_t>(row - t.begin()), before = after > 0 ? after - 1 : after;
+    const std::vector<double>& forces = table->column("mean_force");
+    double force = forces[after];
+    if (*row > time + near) {  // an output is between two steps
+        if (before == after) return {};
+        force = forces[before] + (forces[after] - forces[before]) * (time - t[before]) / (t[after] - t[before]);
+    }
     return std::isfinite(force) ? std::optional<double>(force) : std::nullopt;
 }
 
