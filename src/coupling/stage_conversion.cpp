@@ -170,12 +170,12 @@ void look_ahead(FlowParticles& particles, const Raster& bed, double reach) {
         if (!(v.squaredNorm() > 0.0)) continue;
         const Vec2 way = v.normalized();
         const double here = way.dot(Vec2(particles.slope_x[k], particles.slope_y[k]));
-        double steepest = here;
+        double gentlest = here;  // downhill
         for (const double far : {0.5 * reach, reach}) {
             const Vec2 x = Vec2(particles.x[k], particles.y[k]) + far * way;
-            steepest = std::max(steepest, way.dot(bed_gradient(bed, x.x(), x.y())));
+            gentlest = std::max(gentlest, way.dot(bed_gradient(bed, x.x(), x.y())));
         }
-        particles.slope_x[k] += (steepest - here) * way.x(), particles.slope_y[k] += (steepest - here) * way.y();
+        particles.slope_x[k] += (gentlest - here) * way.x(), particles.slope_y[k] += (gentlest - here) * way.y();
     }
 }
 
