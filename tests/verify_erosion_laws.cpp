@@ -138,6 +138,22 @@ TEST_CASE("Each law's growth of a slab is of second order in time", "[erosion][v
     }
 }
 
+// h du/dt = a h - (1 - kappa) E u. With kappa = 1 the bed brings what momentum friction takes, and no more. By E u = c h it is
+// as much as it needs.
+TEST_CASE("A bed that friction sets in motion slows no slab", "[erosion][verify]") {
+    const double u0 = 8.0, end = 4.0, c = kMu * kGravity * std::cos(kSlope), a = kGravity * std::sin(kSlope) - c;
+    Scene scene = slab(1.5, u0, -1e9, 10.0);
+    scene.erodible->law = erosion::Jump{0.0};
+    scene.erodible->momentum = 1.0, scene.erodible->density = scene.density;
+    DepthAveraged run(scene);
+    run_to(run, end);
+    const State found = middle_of(run, scene.particles);
+    REQUIRE(found[0] > 2.0 * 1.5);  // it matters
+    // Each exchange errs by its fourth power of the growth, so the sum by the third.
+    constexpr double kGrowth = 0.02;
+    CHECK(found[1] == Approx(u0 + a * end).epsilon(kGrowth * kGrowth * kGrowth));
+}
+
 TEST_CASE("A bed whose friction holds more than the flow's stress is not taken mechanically", "[erosion]") {
     Scene scene = slab(1.5, 2.0, -1e9, 10.0);
     scene.erodible->law = erosion::Mechanical{0.3, 1.0};  // of 1.2 the flow's density

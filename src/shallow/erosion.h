@@ -102,8 +102,8 @@ private:
     };
     Stretch next_stretch(const Step& step);
     Erosion(const Scene& scene, const ErodibleBed& bed, Flow& flow);
-    template <class Law, class Friction, class Real, bool kFresh>
-    void demand_of_tile(Flow& flow, Index n, const Stretch& stretch, const Law& law, const Friction& friction);
+    template <class Law, class Drag, class Real, bool kFresh>
+    void demand_of_tile(Flow& flow, Index n, const Stretch& stretch, const Law& law, Drag& drag);
     template <class Law, bool kFresh>
     void see_layer(const MeansOfFour& means, Double4 cosine, erosion::StateOf<Double4>& state) const;
     template <class Real>

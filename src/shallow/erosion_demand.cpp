@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "law/bed/node_friction.h"
 #include "mpm/domain.h"
 #include "mpm/tile_points.h"
+#include "shallow/drag_of_four.h"
 #include "shallow/erosion.h"
 #include "shallow/ground_of_four.h"
 #include "shallow/sub_points_of_four.h"
@@ -21,40 +21,16 @@ constexpr double kMostGain = 1e3;
 /// Growth in half of a stretch above which no acceleration is followed: it is no small correction any more.
 constexpr double kMostFollowed = 0.05;
 
-/// Friction that nothing depends on: of laws without stress, when the bed brings no momentum.
-struct Unfelt {};
-
-/// The bed law under four points: that of the run, or those of the nodes nearest to them.
-template <class Friction>
-decltype(auto) law_under(const Friction& friction, const Flow& flow, const Double4& x, const Double4& y) {
-    if constexpr (std::is_same_v<Friction, LawOfEachNode>) {
-        std::array<Index, 4> k{};
-        for (int n = 0; n < 4; ++n) k[static_cast<std::size_t>(n)] = flow.grid.nearest(x[n], y[n]);
-        return LawsHere<Double4>(*flow.laws, k);
-    } else {
-        return (friction);
-    }
-}
-
-/// What the law alone takes of the speeds of four points on the map [m/s^2]. It is over a time in which no flow changes
-/// much.
-template <class Law>
-Double4 decelerations(const Law& law, const BedStateOf<Double4>& bed, Double4 speed) {
-    constexpr double kShort = 2e-5;  // [s]; shorter, rounding would part mirror particles
-    return (speed - speeds_after(law, bed, speed, speed, kShort)) * (1.0 / kShort);
-}
-
 /// exp(x) - 1 of four x >= 0. A step's growth is small: Taylor series that are right to round-off, the next term is 1e-18
-/// of the first.
+/// of the first. The short one in pairs of terms, which do not wait for one another.
 [[gnu::always_inline]] inline Double4 growth_of_four(Double4 x) {
     constexpr double kShortSeries = 1e-3, kSeries = 1.0 / 16;
-    const auto series = [&](int terms) {
-        Double4 sum = x * (1.0 / terms);
-        for (int n = terms - 1; n > 1; --n) sum = x * (1.0 / n) * (1.0 + sum);
-        return x * (1.0 + sum);
-    };
-    if (!any(x > kShortSeries)) return series(5);
-    Double4 sum = series(9);
+    const Double4 one = all(1.0), x2 = x * x;
+    if (!any(x > kShortSeries)) return (x + x2 * (0.5 + x * (1.0 / 6))) + (x2 * x2) * (1.0 / 24 + x * (1.0 / 120));
+    constexpr int kTerms = 9;
+    Double4 sum = x * (1.0 / kTerms);
+    for (int n = kTerms - 1; n > 1; --n) sum = x * (1.0 / n) * (one + sum);
+    sum = x * (one + sum);
     if (any(x > kSeries))
         for (int lane = 0; lane < 4; ++lane)
             if (x[lane] > kSeries) sum[lane] = std::expm1(x[lane]);
@@ -95,32 +71,49 @@ struct Flight {
         const Double4 own = 1.0 / s;
         return {own, (a - middle) * own};
     }
+    /// Their size [m/s], from 1/s. The root waits for `a` alone, not for s.
+    Double4 speed(Double4 own, Double4 a) const {
+        const Double4 x = vx + (a - middle) * ax, y = vy + (a - middle) * ay;
+        return own * sqrt(x * x + y * y);
+    }
     Double4 x(const InFlight& v) const { return v.own * vx + v.driven * ax; }
     Double4 y(const InFlight& v) const { return v.own * vy + v.driven * ay; }
 };
 
+/// How fast four points grow, and how fast friction takes momentum of what they are by then, both of what they had at the
+/// stretch's beginning [1/s].
+struct Rates {
+    Double4 growth, braking;
+};
+
 /// What comes of a stretch.
 struct Grown {
-    Double4 gain;            ///< over what there was
+    Double4 gain, braked;    ///< over what there was
     InFlight velocity, way;  ///< at its end, and along it
 };
 
-/// Kutta's steps of third order along a flight, for a time `dt`. rate(velocity, gain, last) is the rate of growth. By
-/// 1/slowed(gain, time) bed that was taken slows the flow.
-template <class Law, class Rate, class Slowed>
-[[gnu::always_inline]] inline Grown grown_along(Flight& flight, double dt, const Rate& rate, const Slowed& slowed) {
-    const Double4 none = {}, one = all(1.0);
+/// Kutta's steps of third order along a flight, for a time `dt`. Of rates(speed, gain), and of bed that slows the flow by
+/// 1/slowed(gain, braked).
+template <class Law, class RatesAt, class Slowed>
+[[gnu::always_inline]] inline Grown grown_along(Flight& flight, double dt, const RatesAt& rates, const Slowed& slowed) {
+    const Double4 none = {}, one = all(1.0), half = all(0.5 * dt), sixth = all(dt / 6.0);
     const InFlight v1 = flight.velocity(one, none);
-    const Double4 rate1 = rate(v1, none, false), x2 = (0.5 * dt) * rate1, gain2 = gains<Law>(x2),
-                  s2 = slowed(gain2, 0.5 * dt);
-    const Mask4 follows = x2 <= kMostFollowed;
-    flight.ax = select(follows, flight.ax, none), flight.ay = select(follows, flight.ay, none);
-    const InFlight v2 = flight.velocity(s2, all(0.5 * dt));
-    const Double4 rate2 = rate(v2, gain2, false), x3 = max(dt * (2.0 * rate2 - rate1), x2), gain3 = gains<Law>(x3),
-                  s3 = slowed(gain3, dt);
-    const InFlight v3 = flight.velocity(s3, dt * (2.0 * s2 - 1.0));
-    const Double4 gain = gains<Law>((dt / 6.0) * (rate1 + 4.0 * rate2 + rate(v3, gain3, true))), sixth = all(dt / 6.0);
-    return {gain, flight.velocity(slowed(gain, dt), sixth * (1.0 + 4.0 * s2 + s3)), (v1 + v2 * all(4.0) + v3) * sixth};
+    const Rates r1 = rates(flight.speed(one, none), none);
+    const Double4 x2 = half * r1.growth, gain2 = gains<Law>(x2), braked2 = half * r1.braking,
+                  s2 = slowed(gain2, braked2);
+    if (const Mask4 fast = x2 > kMostFollowed; any(fast))
+        flight.ax = select(fast, none, flight.ax), flight.ay = select(fast, none, flight.ay);
+    const InFlight v2 = flight.velocity(s2, half);
+    const Rates r2 = rates(flight.speed(v2.own, half), gain2);
+    const Double4 x3 = max(dt * (2.0 * r2.growth - r1.growth), x2), gain3 = gains<Law>(x3),
+                  braked3 = max(dt * (2.0 * r2.braking - r1.braking), braked2), s3 = slowed(gain3, braked3),
+                  a3 = dt * (2.0 * s2 - 1.0);
+    const InFlight v3 = flight.velocity(s3, a3);
+    const Rates r3 = rates(flight.speed(v3.own, a3), gain3);
+    const Double4 gain = gains<Law>(sixth * (r1.growth + 4.0 * r2.growth + r3.growth)),
+                  braked = sixth * (r1.braking + 4.0 * r2.braking + r3.braking);
+    const InFlight v = flight.velocity(slowed(gain, braked), sixth * (1.0 + 4.0 * s2 + s3));
+    return {gain, braked, v, (v1 + v2 * all(4.0) + v3) * sixth};
 }
 
 }  // namespace
@@ -130,18 +123,17 @@ void Erosion::find_demand(Flow& flow, const Stretch& stretch) {
     flow.particles.with_real([&](auto real) {
         using Real = decltype(real);
         for_each_eroding_in_turn(flow, [&](Index n) {
-            const auto demand = [&](const auto& law, const auto& friction) {
+            const auto demand = [&](const auto& law, auto&& drag) {
                 using Law = std::decay_t<decltype(law)>;
-                using Under = std::decay_t<decltype(friction)>;
+                using Drag = std::decay_t<decltype(drag)>;
                 if constexpr (Law::kSeesEroded || Law::kSeesLeft || Law::kSeesStress)
-                    if (deposits_) return demand_of_tile<Law, Under, Real, true>(flow, n, stretch, law, friction);
-                demand_of_tile<Law, Under, Real, false>(flow, n, stretch, law, friction);
+                    if (deposits_) return demand_of_tile<Law, Drag, Real, true>(flow, n, stretch, law, drag);
+                demand_of_tile<Law, Drag, Real, false>(flow, n, stretch, law, drag);
             };
             const auto demand_of = [&](const auto& law) {
                 if constexpr (!std::decay_t<decltype(law)>::kSeesStress)
                     if (momentum_ == 0.0) return demand(law, Unfelt{});
-                if (flow.laws) return demand(law, LawOfEachNode{});
-                std::visit([&](const auto& friction) { demand(law, friction); }, friction_);
+                with_drag(flow, friction_, [&](DragOfFour& drag) { demand(law, drag); });
             };
             std::visit(demand_of, law_);
             spread<Real>(flow, n, wanted_, demand_);
@@ -168,24 +160,27 @@ namespace {
 
 /// THEORY.md, section 20: what deposits below four points bear [Pa]: friction at rest has held them. The speed is along
 /// the map. A thin layer bears less: what lies below it is felt.
-template <class Law>
-Double4 strengths(const Law& law, const BedStateOf<Double4>& bed, Double4 speed, const erosion::StateOf<Double4>& s) {
+Double4 strengths(const DragOfFour& drag, const BedStateOf<Double4>& bed, Double4 speed,
+                  const erosion::StateOf<Double4>& s) {
     constexpr double kCreep = 0.01;     // [m/s]; what of the friction grows with the speed is nothing yet
     constexpr double kRounding = 1e-6;  // where friction does not depend on the speed, nothing is left above it
     constexpr double kThinnest = 0.01;  // of the flow, from which on a deposit bears all
-    const Double4 one = all(1.0), held = decelerations(law, bed, min(speed, all(kCreep)));
+    const Double4 one = all(1.0), held = drag.decelerations(bed, min(speed, all(kCreep)));
     const Double4 covers = min(s.lies / (kThinnest * s.thickness), one);
     return (1.0 + kRounding) * s.density * s.thickness * bed.kappa * covers * held;
 }
 
-/// What the four nodes around a point have gained of velocity in the last grid update, by linear weights: two sums, of x and
-/// of y. Nodes without mass count as not accelerated, so that nothing is read that the step has not written.
-[[gnu::always_inline]] inline Double4 gained_velocity(const Flow& flow, Index k, double x, double y) {
+/// What the four nodes around a point have gained of velocity in the last grid update, by the weights a, b of the lower
+/// nodes and c, d of the upper ones: two sums, of x and of y. Nodes without mass count as not accelerated, so that nothing
+/// is read that the step has not written.
+[[gnu::always_inline]] inline Double4 gained_velocity(const Flow& flow, Index k, double a, double b, double c,
+                                                      double d) {
     const Index up = k + flow.grid.stride();
     const std::uint8_t* const f = flow.nodes.flags.data();
-    const auto weight = [&](Index node, double w) { return f[node] & kMoving ? w : 0.0; };
-    const double a = weight(k, (1.0 - x) * (1.0 - y)), b = weight(k + 1, x * (1.0 - y)), c = weight(up, (1.0 - x) * y),
-                 d = weight(up + 1, x * y);
+    if (!(f[k] & f[k + 1] & f[up] & f[up + 1] & kMoving)) {
+        const auto weight = [&](Index node, double w) { return f[node] & kMoving ? w : 0.0; };
+        a = weight(k, a), b = weight(k + 1, b), c = weight(up, c), d = weight(up + 1, d);
+    }
     const Motion* const now = flow.nodes.motions();
     const Double4 then =
         Double4{a, a, b, b} * load(&flow.nodes.before[k]) + Double4{c, c, d, d} * load(&flow.nodes.before[up]);
@@ -194,22 +189,28 @@ Double4 strengths(const Law& law, const BedStateOf<Double4>& bed, Double4 speed,
 }
 
 /// The nodes' acceleration, no more than changes the speed by three quarters. Points that have come farther than a cell have
-/// none: the nodes around them may not be those that moved them.
+/// none: the nodes around them may not be those that moved them. `speed2`: the square of theirs on the map.
 template <class Stretch>
-void accelerate(Flight& f, const Flow& flow, const Stretch& stretch, Double4 x, Double4 y, Double4 speed, int lanes) {
+void accelerate(Flight& f, const Flow& flow, const Stretch& stretch, Double4 x, Double4 y, Double4 speed2, int lanes) {
     const double per_second = 1.0 / stretch.velocity_dt;
     const Int4 i = floor_positive(x + kTile), j = floor_positive(y + kTile);
+    const Double4 none = {}, one = all(1.0), to_right = x + kTile - to_double(i), to_top = y + kTile - to_double(j);
+    const Double4 a = (one - to_right) * (one - to_top), b = to_right * (one - to_top), c = (one - to_right) * to_top,
+                  d = to_right * to_top;
     for (int lane = 0; lane < lanes; ++lane) {
-        const Double4 gained = gained_velocity(flow, j[lane] * flow.grid.stride() + i[lane],
-                                               x[lane] + kTile - static_cast<double>(i[lane]),
-                                               y[lane] + kTile - static_cast<double>(j[lane]));
+        const Double4 gained =
+            gained_velocity(flow, j[lane] * flow.grid.stride() + i[lane], a[lane], b[lane], c[lane], d[lane]);
         f.ax[lane] = per_second * gained[0], f.ay[lane] = per_second * gained[1];
     }
+    constexpr double kMostChange = 0.75;
     const double reach = std::max(std::abs(stretch.middle), std::abs(stretch.whole - stretch.middle));
-    const Double4 none = {}, size = reach * sqrt(f.ax * f.ax + f.ay * f.ay), most = 0.75 * speed;
-    const Double4 share = select(size > most, most / select(size > most, size, all(1.0)), all(1.0));
-    const Mask4 near = speed * stretch.step <= flow.cell;
-    f.ax = select(near, share * f.ax, none), f.ay = select(near, share * f.ay, none);
+    const Mask4 near = speed2 * (stretch.step * stretch.step) <= flow.cell * flow.cell;
+    f.ax = select(near, f.ax, none), f.ay = select(near, f.ay, none);
+    const Double4 change2 = (reach * reach) * (f.ax * f.ax + f.ay * f.ay), most2 = (kMostChange * kMostChange) * speed2;
+    const Mask4 much = change2 > most2;
+    if (!any(much)) return;
+    const Double4 share = select(much, sqrt(most2 / select(much, change2, one)), one);
+    f.ax *= share, f.ay *= share;
 }
 
 /// From the place that a flight has come to when the step ends to that of the flight that takes its place.
@@ -242,25 +243,24 @@ template <class Stretch>
 }
 
 /// THEORY.md, section 18: growth along the flight since the last exchange, and the flight that begins where it ends.
-template <class Law, class Friction, class Real, bool kFresh>
-void Erosion::demand_of_tile(Flow& flow, Index n, const Stretch& stretch, const Law& law, const Friction& friction) {
+template <class Law, class Drag, class Real, bool kFresh>
+void Erosion::demand_of_tile(Flow& flow, Index n, const Stretch& stretch, const Law& law, Drag& drag) {
     Particles& c = flow.particles;
     const double dt = stretch.whole;
     const Carried<Real>& held = c.carried<Real>();
-    constexpr bool kFeels = !std::is_same_v<Friction, Unfelt>;
+    constexpr bool kFeels = !std::is_same_v<std::remove_const_t<Drag>, Unfelt>;
     const double slowest = std::max(kSlowest, slowest_);
     Double4 farthest = {};
     for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
         const Double4 depth = load(&held.depth[p], lanes), none = {}, one = all(1.0);
-        const Double4 vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes), on_map = sqrt(vx * vx + vy * vy);
-        const Mask4 moves = (on_map > slowest) & (depth >= min_depth_) & (depth > flow.dry_depth());
+        const Double4 vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes), speed2 = vx * vx + vy * vy;
+        const Mask4 moves = (speed2 > slowest * slowest) & (depth >= min_depth_) & (depth > flow.dry_depth());
         if (!any(moves)) return store(&wanted_[p], none, lanes);
         const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes), mass = load(&c.mass[p], lanes);
         const MeansOfFour means(flow.grid, x, y);
-        const auto& below = law_under(friction, flow, x, y);
+        if constexpr (kFeels) drag.move_to(x, y);
         // Those that rest do as if they moved: nothing comes of it.
-        const Double4 u = select(moves, on_map, one), ux = select(moves, vx, one), uy = select(moves, vy, none);
-        const Double4 deep = select(moves, depth, one);
+        const Double4 ux = select(moves, vx, one), uy = select(moves, vy, none), deep = select(moves, depth, one);
         // A curved bed changes the weight alone, which only friction and laws of it use.
         GroundOfFour ground(flow, kFeels && curved_, means, ux, uy, deep);
         erosion::StateOf<Double4> state;
@@ -270,31 +270,32 @@ void Erosion::demand_of_tile(Flow& flow, Index n, const Stretch& stretch, const 
         see_layer<Law, kFresh>(means, ground.below.cosine, state);
         if constexpr (Law::kSeesLeft) state.edge = sqrt(select(moves, mass / (flow.density * deep), one));
         Flight flight{ux, uy, none, none, stretch.middle};
-        if (stretch.velocity_dt > 0.0) accelerate(flight, flow, stretch, x, y, u, lanes);
-        const Double4 along = ground.speed / u;
-        Double4 brake = none;  // in the middle of the stretch at last
-        const auto rate = [&](const InFlight& v, Double4 gain, bool last) {
-            const Double4 speed = sqrt(flight.x(v) * flight.x(v) + flight.y(v) * flight.y(v));
+        if (stretch.velocity_dt > 0.0) accelerate(flight, flow, stretch, x, y, select(moves, speed2, one), lanes);
+        const Double4 along = ground.below.kappa;
+        const auto rates = [&](Double4 speed, Double4 gain) {
             state.speed = along * speed;
-            state.thickness = ground.below.thickness = thickness * (1.0 + gain);
+            const Double4 grown = 1.0 + gain;
+            state.thickness = ground.below.thickness = thickness * grown;
+            Rates now{none, none};
             if constexpr (kFeels) {
-                const Double4 felt = decelerations(below, ground.below, speed);
-                if (!last) brake = felt;
+                const Double4 felt = drag.decelerations(ground.below, speed);
+                if (momentum_ > 0.0) now.braking = grown * felt / speed;
                 state.stress = flow.density * state.thickness * ground.below.kappa * felt;
                 if constexpr (Law::kSeesStress && kFresh)
-                    if (any(state.lies > none)) state.bears = strengths(below, ground.below, speed, state);
+                    if (any(state.lies > none)) state.bears = strengths(drag, ground.below, speed, state);
             }
-            return min(growth_rates(law, state, per_thickness), all(kMostGain / dt));
+            now.growth = min(growth_rates(law, state, per_thickness), all(kMostGain / dt));
+            return now;
         };
-        const auto slowed = [&](Double4 gain, double time) {
-            return momentum_ > 0.0 ? one / speeds_left(gain, brake * (time / u)) : one + gain;
+        const auto slowed = [&](Double4 gain, Double4 braked) {
+            return kFeels && momentum_ > 0.0 ? one / speeds_left(gain, braked) : one + gain;
         };
-        const Grown grown = grown_along<Law>(flight, dt, rate, slowed);
+        const Grown grown = grown_along<Law>(flight, dt, rates, slowed);
         const Mask4 grows = moves & (grown.gain > none);
         store(&wanted_[p], select(grows, grown.gain * mass, none), lanes);
         store(&speed_[p], ground.speed, lanes);
         if constexpr (kFeels)
-            if (momentum_ > 0.0) store(&braked_[p], brake * (dt / u), lanes);
+            if (momentum_ > 0.0) store(&braked_[p], grown.braked, lanes);
         const InFlight v = grown.velocity, later = shift(grown, stretch);
         const Double4 extra = select(grows, v.driven - (dt - flight.middle), none);
         store(&extra_x_[p], extra * flight.ax, lanes), store(&extra_y_[p], extra * flight.ay, lanes);

@@ -44,10 +44,11 @@ private:
     Double4 weights_[4][3];  ///< of a point, of a row: three nodes, and zero
 };
 
-/// The bed law's input below four points that have a speed, and their speed along it; on gentle ground that of the map.
+/// The bed law's input below four points that have a speed, and their speeds along it and on the map; on gentle ground they
+/// are the same.
 struct GroundOfFour {
     BedStateOf<Double4> below;
-    Double4 speed;
+    Double4 speed, on_map;
     [[gnu::always_inline]] GroundOfFour(const Flow& flow, bool curved, const MeansOfFour& means, Double4 vx, Double4 vy,
                                         Double4 depth) {
         const Double4 one = all(1.0), none = {};
@@ -62,7 +63,8 @@ struct GroundOfFour {
             bx = sx, by = sy;
         }
         const Double4 on_map2 = vx * vx + vy * vy, rise = vx * bx + vy * by;
-        const Double4 cosine = one / sqrt(one + bx * bx + by * by), on_map = sqrt(on_map2);
+        const Double4 cosine = one / sqrt(one + bx * bx + by * by);
+        on_map = sqrt(on_map2);
         speed = sqrt(on_map2 + rise * rise);
         below = {gravity * cosine * (on_map / speed),
                  max(depth * cosine, all(1e-9)),

@@ -24,6 +24,15 @@ double ErodingSlab::drive() const {
     return gravity * (std::sin(slope_deg * kDegree) - mu * std::cos(slope_deg * kDegree));
 }
 
+double ErodingSlab::friction() const { return mu * gravity * std::cos(slope_deg * kDegree); }
+
+ErodingSlab ErodingSlab::with(double drive, double friction) {
+    ErodingSlab slab;
+    const double slope = std::asin((drive + friction) / slab.gravity);
+    slab.slope_deg = slope / kDegree, slab.mu = friction / (slab.gravity * std::cos(slope));
+    return slab;
+}
+
 SlabState ErodingSlab::at_rate(double rate, double t) const {
     const double a = drive(), p = 2.0 - kappa;
     const auto speed_at = [&](double h) {
@@ -50,6 +59,11 @@ SlabState ErodingSlab::grown_voellmy(double growth, double xi, double t) const {
     };
     const State<2> end = integrate<2>(rates, 0.0, t, {0.0, 0.0}, 1e-2);
     return {end[0], end[1], thickness * std::exp(growth * end[1])};
+}
+
+SlabState ErodingSlab::jumped(double t) const {
+    const double b = drive() - (1.0 - kappa) * friction(), u = speed + b * t;
+    return {u, (speed + 0.5 * b * t) * t, thickness * std::pow(u / speed, friction() / b)};
 }
 
 double ErodingSlab::time_to(double growth, double way) const {
@@ -126,6 +140,31 @@ std::vector<Residual> voellmy_slab_residuals() {
     return {printed("speed after 2000 m", slab.grown_voellmy(growth, xi, early).speed, 27.684181, 5e-7),
             {"without drag as Coulomb's",
              coulomb.grown_voellmy(2e-3, 1e300, 15.0).speed / coulomb.grown(2e-3, 15.0).speed - 1.0, 1e-9}};
+}
+
+ErodingSlab jumping_slab(double kappa) {
+    constexpr double kShare = 0.04;
+    const ErodingSlab usual;
+    ErodingSlab slab = ErodingSlab::with(usual.drive(), kShare * usual.friction());
+    slab.thickness = 0.5, slab.speed = 3.0, slab.kappa = kappa;
+    return slab;
+}
+
+std::vector<Residual> jumping_slab_residuals() {
+    const double t = 20.0, d = 1e-3;
+    std::vector<Residual> list = {printed("speed, kappa 0", jumping_slab(0.0).jumped(t).speed, 48.086775, 5e-7),
+                                  printed("thickness, kappa 0", jumping_slab(0.0).jumped(t).thickness, 0.566839, 5e-7),
+                                  printed("thickness, kappa 1", jumping_slab(1.0).jumped(t).thickness, 0.564784, 5e-7)};
+    for (const double kappa : {0.0, 0.5, 1.0}) {
+        const ErodingSlab slab = jumping_slab(kappa);
+        const SlabState now = slab.jumped(t), before = slab.jumped(t - d), after = slab.jumped(t + d);
+        const double rate = slab.friction() * now.thickness / now.speed;
+        list.push_back({"dh/dt - E", (after.thickness - before.thickness) / (2.0 * d) - rate, 1e-9});
+        const double force = slab.drive() * now.thickness - (1.0 - kappa) * rate * now.speed;
+        list.push_back({"h du/dt - (a h - (1 - kappa) E u)",
+                        now.thickness * (after.speed - before.speed) / (2.0 * d) - force, 1e-8});
+    }
+    return list;
 }
 
 std::vector<Residual> trench_residuals() {

@@ -102,6 +102,15 @@ Measurement run_growth(const Setup& setup) {
     return run_slabs(setup, runs);
 }
 
+Measurement run_jump(const Setup& setup) {
+    std::vector<SlabRun> runs;
+    for (const double kappa : kKappas) {
+        const ErodingSlab slab = jumping_slab(kappa);
+        runs.push_back({slab, erosion::Jump{0.0}, bed::Coulomb{slab.mu}, 20.0, slab.jumped(20.0)});
+    }
+    return run_slabs(setup, runs);
+}
+
 Measurement run_voellmy(const Setup& setup) {
     ErodingSlab slab;
     slab.thickness = 1.5;
@@ -255,7 +264,12 @@ std::vector<Problem> erosion_problems() {
                    run_growth};
     Problem voellmy{
         "slab_voellmy_growth", "the same with Voellmy's drag", {10, 20, 40, 80}, voellmy_slab_residuals, run_voellmy};
-    for (Problem* slab : {&constant, &growth, &voellmy}) {
+    Problem jump{"slab_jump",
+                 "what a slab's friction sets in motion, kappa 0, 1/2 and 1 (Fraccarollo and Capart 2002)",
+                 {10, 20, 40},
+                 jumping_slab_residuals,
+                 run_jump};
+    for (Problem* slab : {&constant, &growth, &voellmy, &jump}) {
         slab->order_of = "speed_error";
         const Index finest = slab->grids.back();
         slab->gates = {exact("speed_error"),
@@ -287,7 +301,7 @@ std::vector<Problem> erosion_problems() {
     Problem lake{
         "erosion_lake", "the lake around an island over a loose bed, seven laws: nothing is taken", {50}, {}, run_lake};
     lake.gates = {{0, "max_speed", 0.0, "rest to the last bit"}, {0, "taken", 0.0, "what rests takes nothing"}};
-    return {constant, growth, voellmy, trench, cap, lake};
+    return {constant, growth, voellmy, jump, trench, cap, lake};
 }
 
 }  // namespace frana::verify
