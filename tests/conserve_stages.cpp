@@ -3,12 +3,15 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 
 #include "analytic_scene.h"
 #include "base/error.h"
 #include "catch.h"
+#include "convert/flow_particles.h"
 #include "coupling/bed_friction.h"
+#include "coupling/stage_conversion.h"
 #include "coupling/staged_run.h"
 #include "fake_gis.h"
 #include "observe/budget.h"
@@ -428,6 +431,20 @@ TEST_CASE("Where the window's edge lies at a break of slope, the ground gives no
     CAPTURE(break_at);
     REQUIRE(run.points()->status().points > 500);
     CHECK(most / before < 1.03);  // 1.22, 1.57, 1.04 with the slope at the place itself
+}
+
+TEST_CASE("Ground that is not known ahead leaves particles their own slope", "[stages]") {
+    constexpr double kSlope = -0.6, kEdge = 10.0;
+    Raster bed = scene_on(21, 5, 1.0, [](double x, double) { return kSlope * x; }).bed;
+    const GridGeometry& g = bed.geometry;
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i)
+            if (g.x(i) > kEdge) bed.at(i, j) = std::numeric_limits<double>::quiet_NaN();
+    FlowParticles particles;
+    particles.x = {kEdge - 0.75}, particles.y = {g.y(2)}, particles.vx = {3.0}, particles.vy = {0.0};
+    take_slopes(particles, bed);
+    look_ahead(particles, bed, 2.0);
+    CHECK(particles.slope_x[0] == Approx(kSlope));  // 0, as of a flat, when the unknown counted
 }
 
 TEST_CASE("Points meet particles by steps of equal length", "[stages]") {

@@ -173,6 +173,7 @@ void look_ahead(FlowParticles& particles, const Raster& bed, double reach) {
         double gentlest = here;  // downhill
         for (const double far : {0.5 * reach, reach}) {
             const Vec2 x = Vec2(particles.x[k], particles.y[k]) + far * way;
+            if (!std::isfinite(bed_elevation(bed, x.x(), x.y()))) break;
             gentlest = std::max(gentlest, way.dot(bed_gradient(bed, x.x(), x.y())));
         }
         particles.slope_x[k] += (gentlest - here) * way.x(), particles.slope_y[k] += (gentlest - here) * way.y();

@@ -33,7 +33,8 @@ FlowParticles in_parts(const FlowParticles& particles, double spacing, double wi
                        const std::array<double, 4>& extent);
 
 /// Where the bed ahead of a particle within `reach` [m] is less steep downhill, or steeper uphill, the slope along its way
-/// becomes that one. So what comes down to a break of slope does not move into the ground behind it.
+/// becomes that one. So what comes down to a break of slope does not move into the ground behind it. Ground that is not known
+/// counts for nothing.
 void look_ahead(FlowParticles& particles, const Raster& bed, double reach);
 
 constexpr double kAhead = 2.0;  ///< cells of the 3D stage
