@@ -100,7 +100,7 @@ instead(SAY "force, impulse, pressure or acceleration" CODE TEXTS "(^|[^a-zA-Z_]
 instead(SAY "gravity, drive, internal force or acceleration" CODE PARTS pull pulls ROOMS ${models} src/checks/verify/)
 instead(SAY "in reach, active" CODE TEXTS "(^|[^a-zA-Z_])(touched|touches|walked)($|[^a-zA-Z_])" ROOMS src/shallow/ src/structured/)
 instead(SAY "serialize" CODE TEXTS "(^|[^a-zA-Z_])keep(_[a-z_]+)?[(](Archive|archive)" "(kept_bits|Start::kept)")
-instead(SAY "flip" CODE PARTS keeps kept ROOMS src/solid3d/ NOT_IN src/solid3d/prism src/solid3d/solid_kernel)
+instead(SAY "flip" CODE PARTS keeps kept ROOMS src/solid3d/ NOT_IN src/solid3d/prism src/solid3d/surface_contact)
 instead(SAY "sample, or observe" CODE TEXTS "(->|[.]|::|void )(look|see)[(]" NOT_IN tests/ vtk_io/figures/)
 instead(SAY "finite, valid or sound_speed" CODE TEXTS "require_sound" "(^|[^a-zA-Z_])sound_?($|[^a-zA-Z_])" ROOMS src/)
 instead(SAY "at_front, of the wet-dry front" CODE PARTS rim ROOMS ${models})

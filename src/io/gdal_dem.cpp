@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <regex>
 #include <sstream>
 
 #include "base/error.h"
+#include "base/pattern.h"
 #include "io/gdal_crs.h"
 #include "io/gdal_onto.h"
 #include "io/gdal_reader.h"
@@ -95,10 +95,10 @@ Raster resampled(const RasterFile& raster, const std::array<double, 4>& window, 
 /// Heights in feet that the file only speaks of: no unit of the band and no vertical CRS says so.
 void remark_named_feet(const RasterFile& raster, std::vector<std::string>& log) {
     if (!raster.unit().empty()) return;
-    static const std::regex feet("\\b(feet|foot|ft|ftUS)\\b", std::regex::icase);
+    static const Pattern feet("\\b(feet|foot|ft|ftUS)\\b", Pattern::Case::ignored);
     std::istringstream lines(raster.description());
     for (std::string line; std::getline(lines, line);)
-        if (std::regex_search(line, feet)) return remark_on(log, Remark::named_feet, raster.name(), {NAN, 0.0, line});
+        if (feet.is_in(line)) return remark_on(log, Remark::named_feet, raster.name(), {NAN, 0.0, line});
 }
 
 }  // namespace

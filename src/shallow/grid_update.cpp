@@ -458,15 +458,26 @@ std::unique_ptr<GridUpdateKernel> with_law(const Scene& scene) {
         scene.bed_law);
 }
 
+/// For terrain that few runs have: no kernel for each law.
+template <class Terrain>
+std::unique_ptr<GridUpdateKernel> with_any_law(const Scene& scene) {
+    const bool on_points = scene.scheme.paper_pressure;
+    if (scene.bed_laws()) return std::make_unique<Kernel<LawOfEachNode, Terrain>>(LawOfEachNode{}, on_points);
+    return std::make_unique<Kernel<AnyLaw, Terrain>>(AnyLaw(scene.bed_law), on_points);
+}
+
 template <bool kLinear>
 std::unique_ptr<GridUpdateKernel> with_curvature(const Scene& scene) {
     switch (scene.curvature) {
         case Curvature::none:
-            return with_law<Steep<Curvature::none, kLinear>>(scene);
+            return with_any_law<Steep<Curvature::none, kLinear>>(scene);
         case Curvature::inertia:
-            return with_law<Steep<Curvature::inertia, kLinear>>(scene);
+            return with_any_law<Steep<Curvature::inertia, kLinear>>(scene);
         case Curvature::full:
-            return with_law<Steep<Curvature::full, kLinear>>(scene);
+            if constexpr (kLinear)
+                return with_any_law<Steep<Curvature::full, kLinear>>(scene);
+            else
+                return with_law<Steep<Curvature::full, kLinear>>(scene);
     }
     throw InternalError("unknown curvature");
 }

@@ -52,4 +52,13 @@ double speeds_after(const LawsHere<double>& here, const BedState& bed, double s0
                       here.all->laws);
 }
 
+void AnyLaw::brake(const BedStateOf<Double4>& bed, const Double4& s0, const Double4& driven, double dt,
+                   Double4& speed) const {
+    std::visit([&](const auto& one) { speed = speeds_after(one, bed, s0, driven, dt); }, law);
+}
+
+double speeds_after(const AnyLaw& law, const BedState& bed, double s0, double driven, double dt) {
+    return std::visit([&](const auto& one) { return double{one.speed_after(bed, s0, driven, dt)}; }, law.law);
+}
+
 }  // namespace frana

@@ -62,6 +62,26 @@ struct LawsHere<Double4> {
 }
 double speeds_after(const LawsHere<double>& here, const BedState& bed, double s0, double driven, double dt);
 
+/// In a kernel for terrain that few runs have: one law for all nodes, whichever it is. Such a kernel is there once, not for
+/// each law; a call for four nodes is what that costs.
+struct AnyLaw {
+    explicit AnyLaw(const BedLaw& one) : law(one), at_rest(frana::friction_at_rest(one)) {}
+    double friction_at_rest() const { return at_rest; }
+    void brake(const BedStateOf<Double4>& bed, const Double4& s0, const Double4& driven, double dt,
+               Double4& speed) const;
+
+    BedLaw law;
+    double at_rest;
+};
+
+[[gnu::always_inline]] inline Double4 speeds_after(const AnyLaw& law, const BedStateOf<Double4>& bed, Double4 s0,
+                                                   Double4 driven, double dt) {
+    Double4 speed;
+    law.brake(bed, s0, driven, dt, speed);
+    return speed;
+}
+double speeds_after(const AnyLaw& law, const BedState& bed, double s0, double driven, double dt);
+
 /// What a kernel calls of its law at node k, or at four from there on. `laws` is there for LawOfEachNode.
 template <class Real, class Law>
 [[gnu::always_inline]] inline decltype(auto) law_at(const Law& law, const std::optional<NodeLaws>& laws, Index k) {

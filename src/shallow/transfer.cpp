@@ -55,16 +55,87 @@ void deposit_paper_pressure(Flow& flow, const S& sx, const S& sy, double mass, d
     }
 }
 
-/// S: shape. kTransfer: how velocity travels. Law: rheology. kPaper: pressure on points, depth carried by them.
-template <class S, Transfer kTransfer, class Law, bool kPaper>
-class Kernel final : public TransferKernel {
-    static constexpr bool kAffine = kTransfer == Transfer::tpic || kTransfer == Transfer::apic;
+constexpr bool is_affine(Transfer transfer) { return transfer == Transfer::tpic || transfer == Transfer::apic; }
+
+/// What the points of a tile give to their nodes, whatever their rheology is.
+class PointDeposits {
+public:
+    virtual ~PointDeposits() = default;
+    /// Of points `first` to `end` - 1. `cap`: most_viscosity().
+    virtual void deposit(Flow& flow, Index first, Index end, double cap, PointSums& sums) const = 0;
+};
+
+/// S: shape. kAffine: gradients of velocity travel too. Law: rheology. kPaper: pressure on points.
+template <class S, bool kAffine, class Law, bool kPaper>
+class DepositsOf final : public PointDeposits {
     static constexpr bool kStress = !std::is_same_v<Law, rheology::None>;
+
+public:
+    explicit DepositsOf(const Law& law) : law_(law) {}
+
+    void deposit(Flow& flow, Index first, Index end, double cap, PointSums& sums) const override {
+        for (Index p = first; p < end; ++p) deposit_point(flow, p, cap, sums);
+    }
+
+private:
+    void deposit_point(Flow& flow, Index p, double cap, PointSums& sums) const {
+        const Particles& c = flow.particles;
+        const S sx(c.x[p]), sy(c.y[p]);
+        const double m = c.mass[p], vx = c.vx[p], vy = c.vy[p];
+        Deposit* deposits = flow.nodes.deposits();
+        Double4 base = {m * vx, m * vy, 0.0, 0.0}, along_x = {}, along_y = {};
+        if constexpr (kAffine) {
+            const double mc = m * flow.cell;
+            const Gradient g =
+                spanned({c.cxx[p], c.cxy[p], c.cyx[p], c.cyy[p]}, c.r1x[p], c.r1y[p], c.r2x[p], c.r2y[p]);
+            along_x = mc * Double4{g.xx, g.yx, 0.0, 0.0};
+            along_y = mc * Double4{g.xy, g.yy, 0.0, 0.0};
+            base -= sx.offset * along_x + sy.offset * along_y;
+        }
+        for (int j = 0; j < S::kNodes; ++j) {
+            const Index first = flow.grid.at(sx.base, sy.base + j);
+            Deposit* row = deposits + first;
+            const Double4 value = base + static_cast<double>(j) * along_y;
+            for (int i = 0; i < S::kNodes; ++i) {
+                store(row + i, load(row + i) + (sx.w[i] * sy.w[j]) * (value + static_cast<double>(i) * along_x));
+                flow.nodes.mass[first + i] += sx.w[i] * sy.w[j] * m;
+            }
+        }
+        if constexpr (kPaper) deposit_particle(flow.grid, flow.nodes.column_mass.data(), sx, sy, m);
+        if constexpr (!kPaper) deposit_sub_points<S, double>(flow, p);
+        if constexpr (kStress) {
+            if (c.depth[p] > flow.dry_depth()) {
+                const double volume = m / flow.density;
+                const Plane rate{c.cxx[p], c.cyy[p], 0.5 * (c.cxy[p] + c.cyx[p])};
+                const double shear = shear_at(flow, c.x[p], c.y[p], vx, vy, c.depth[p]);
+                const StrainState<double> state{rate, shear, flow.scheme.strain_rate_floor, cap};
+                Plane sigma;
+                with_rheology_of(law_, flow.rheologies,
+                                 [&](const auto& rheology) { sigma = rheology.stress(c.x[p], c.y[p], state); });
+                deposit_stress(flow, sx, sy, volume, sigma);
+                sums.stress_power += volume * (sigma.xx * rate.xx + sigma.yy * rate.yy + 2.0 * sigma.xy * rate.xy);
+            }
+        }
+        if constexpr (kPaper) deposit_paper_pressure(flow, sx, sy, m, c.depth[p]);
+        sums.mass += m;
+        sums.px += m * vx;
+        sums.py += m * vy;
+        sums.p_abs += m * std::hypot(vx, vy);
+    }
+
+    Law law_;
+};
+
+/// kTransfer: how velocity travels. kPaper: pressure on points, depth carried by them. No part of it depends on the
+/// rheology, of which there are many.
+template <class S, Transfer kTransfer, bool kPaper>
+class Kernel final : public TransferKernel {
+    static constexpr bool kAffine = is_affine(kTransfer);
     /// Nodes that a point and its sub-points touch, from the first of a quadratic stencil there.
     static constexpr int kBefore = std::is_same_v<S, Cubic> ? 2 : 1, kAfter = std::is_same_v<S, Cubic> ? 4 : 3;
 
 public:
-    explicit Kernel(const Law& law) : law_(law) {}
+    explicit Kernel(std::unique_ptr<PointDeposits> deposits) : deposits_(std::move(deposits)) {}
 
     PointSums deposit(Flow& flow, double velocity_dt) override {
         make_room(flow);
@@ -72,14 +143,13 @@ public:
         const double cap = most_viscosity(flow, velocity_dt);
         for_each_tile_in_turn(flow.active, [&](Index n) {
             if (!flow.rest.deposits[n]) return;
-            const Index tile = flow.active.tile[n];
+            const Index tile = flow.active.tile[n], first = flow.active.begin[n], end = flow.active.begin[n + 1];
             PointSums sums;
             StencilMarks marks = flow.marks_of(tile);
-            for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
-                deposit_point(flow, p, cap, sums);
+            deposits_->deposit(flow, first, end, cap, sums);
+            for (Index p = first; p < end; ++p)
                 marks.mark(static_cast<std::int32_t>(std::floor(flow.particles.x[p] + (kTile - 0.5))),
                            static_cast<std::int32_t>(std::floor(flow.particles.y[p] + (kTile - 0.5))));
-            }
             flow.reach[tile] = marks.reach(kBefore, kAfter);
             deposited_[tile] = sums;
         });
@@ -158,51 +228,6 @@ private:
         const double scale = gradient_scale() / flow.cell;
         for (double* c_kl : {&sum.cxx, &sum.cxy, &sum.cyx, &sum.cyy}) *c_kl *= scale;
         return sum;
-    }
-
-    void deposit_point(Flow& flow, Index p, double cap, PointSums& sums) {
-        const Particles& c = flow.particles;
-        const S sx(c.x[p]), sy(c.y[p]);
-        const double m = c.mass[p], vx = c.vx[p], vy = c.vy[p];
-        Deposit* deposits = flow.nodes.deposits();
-        Double4 base = {m * vx, m * vy, 0.0, 0.0}, along_x = {}, along_y = {};
-        if constexpr (kAffine) {
-            const double mc = m * flow.cell;
-            const Gradient g =
-                spanned({c.cxx[p], c.cxy[p], c.cyx[p], c.cyy[p]}, c.r1x[p], c.r1y[p], c.r2x[p], c.r2y[p]);
-            along_x = mc * Double4{g.xx, g.yx, 0.0, 0.0};
-            along_y = mc * Double4{g.xy, g.yy, 0.0, 0.0};
-            base -= sx.offset * along_x + sy.offset * along_y;
-        }
-        for (int j = 0; j < S::kNodes; ++j) {
-            const Index first = flow.grid.at(sx.base, sy.base + j);
-            Deposit* row = deposits + first;
-            const Double4 value = base + static_cast<double>(j) * along_y;
-            for (int i = 0; i < S::kNodes; ++i) {
-                store(row + i, load(row + i) + (sx.w[i] * sy.w[j]) * (value + static_cast<double>(i) * along_x));
-                flow.nodes.mass[first + i] += sx.w[i] * sy.w[j] * m;
-            }
-        }
-        if constexpr (kPaper) deposit_particle(flow.grid, flow.nodes.column_mass.data(), sx, sy, m);
-        if constexpr (!kPaper) deposit_sub_points<S, double>(flow, p);
-        if constexpr (kStress) {
-            if (c.depth[p] > flow.dry_depth()) {
-                const double volume = m / flow.density;
-                const Plane rate{c.cxx[p], c.cyy[p], 0.5 * (c.cxy[p] + c.cyx[p])};
-                const double shear = shear_at(flow, c.x[p], c.y[p], vx, vy, c.depth[p]);
-                const StrainState<double> state{rate, shear, flow.scheme.strain_rate_floor, cap};
-                Plane sigma;
-                with_rheology_of(law_, flow.rheologies,
-                                 [&](const auto& rheology) { sigma = rheology.stress(c.x[p], c.y[p], state); });
-                deposit_stress(flow, sx, sy, volume, sigma);
-                sums.stress_power += volume * (sigma.xx * rate.xx + sigma.yy * rate.yy + 2.0 * sigma.xy * rate.xy);
-            }
-        }
-        if constexpr (kPaper) deposit_paper_pressure(flow, sx, sy, m, c.depth[p]);
-        sums.mass += m;
-        sums.px += m * vx;
-        sums.py += m * vy;
-        sums.p_abs += m * std::hypot(vx, vy);
     }
 
     Gathered gathered(const Flow& flow, Index p) const {
@@ -318,33 +343,38 @@ private:
         ry += dt * (g.cyx * x + g.cyy * y);
     }
 
-    Law law_;
+    std::unique_ptr<PointDeposits> deposits_;
 };
 
-template <class S, Transfer kTransfer>
-std::unique_ptr<TransferKernel> with_rheology(const Scene& scene) {
-    const auto kernel = [&](const auto& law) -> std::unique_ptr<TransferKernel> {
-        using Law = std::decay_t<decltype(law)>;
-        if constexpr (std::is_same_v<S, Cubic>)
-            expect(!scene.scheme.paper_pressure, "cubic shapes with pressure on points");
-        else if (scene.scheme.paper_pressure)
-            return std::make_unique<Kernel<S, kTransfer, Law, true>>(law);
-        return std::make_unique<Kernel<S, kTransfer, Law, false>>(law);
+template <class S, bool kAffine, bool kPaper>
+std::unique_ptr<PointDeposits> with_rheology(const Scene& scene) {
+    const auto deposits = [](const auto& law) -> std::unique_ptr<PointDeposits> {
+        return std::make_unique<DepositsOf<S, kAffine, std::decay_t<decltype(law)>, kPaper>>(law);
     };
-    return scene.rheologies() ? kernel(RheologyOfEachNode{}) : std::visit(kernel, scene.rheology);
+    return scene.rheologies() ? deposits(RheologyOfEachNode{}) : std::visit(deposits, scene.rheology);
+}
+
+template <class S, Transfer kTransfer>
+std::unique_ptr<TransferKernel> with_pressure(const Scene& scene) {
+    constexpr bool kAffine = is_affine(kTransfer);
+    if constexpr (std::is_same_v<S, Cubic>)
+        expect(!scene.scheme.paper_pressure, "cubic shapes with pressure on points");
+    else if (scene.scheme.paper_pressure)
+        return std::make_unique<Kernel<S, kTransfer, true>>(with_rheology<S, kAffine, true>(scene));
+    return std::make_unique<Kernel<S, kTransfer, false>>(with_rheology<S, kAffine, false>(scene));
 }
 
 template <class S>
 std::unique_ptr<TransferKernel> with_transfer(const Scene& scene) {
     switch (scene.scheme.transfer) {
         case Transfer::tpic:
-            return with_rheology<S, Transfer::tpic>(scene);
+            return with_pressure<S, Transfer::tpic>(scene);
         case Transfer::apic:
-            return with_rheology<S, Transfer::apic>(scene);
+            return with_pressure<S, Transfer::apic>(scene);
         case Transfer::flip:
-            return with_rheology<S, Transfer::flip>(scene);
+            return with_pressure<S, Transfer::flip>(scene);
         case Transfer::pic:
-            return with_rheology<S, Transfer::pic>(scene);
+            return with_pressure<S, Transfer::pic>(scene);
     }
     throw InternalError("unknown transfer");
 }

@@ -18,171 +18,48 @@
 namespace frana {
 namespace {
 
+/// PointSums of the lanes, in a fixed order.
+struct Sums {
+    Double4 mass = {}, px = {}, py = {}, p_abs = {}, speed = {}, signal = {}, shift = {}, motion = {},
+            stress_power = {};
+    PointSums rare;
+    PointSums points() const {
+        PointSums s = rare;
+        s.mass += sum(mass);
+        s.px += sum(px);
+        s.py += sum(py);
+        s.p_abs += sum(p_abs);
+        s.stress_power += sum(stress_power);
+        s.max_speed = std::max(s.max_speed, largest(speed));
+        s.max_signal = std::max(s.max_signal, largest(signal));
+        s.max_shift = std::max(s.max_shift, largest(shift));
+        return s;
+    }
+};
+
+constexpr Index kBatch = 128;  ///< points whose stresses wait on the stack, and that are read ahead
+
+/// What points give to their nodes, whatever their rheology is.
+class PointDeposits {
+public:
+    virtual ~PointDeposits() = default;
+    /// Of points `first` to `end` - 1, kBatch at most. `cap`: most_viscosity(). `at_side`: some may be next to the
+    /// grid's sides.
+    virtual void deposit(Flow& flow, Index first, Index end, double cap, bool at_side, StencilMarks& marks,
+                         Sums& sums) const = 0;
+};
+
 /// Real: how memory holds what points carry; it is reckoned with in double precision.
 template <class Law, class Real>
-class PackedKernel final : public TransferKernel {
+class DepositsOf final : public PointDeposits {
     static constexpr bool kStress = !std::is_same_v<Law, rheology::None>;
-    static constexpr Index kBatch = 128;  ///< points whose stresses wait on the stack, and that are read ahead
 
 public:
-    explicit PackedKernel(const Law& law) : law_(law) {}
-
-    PointSums deposit(Flow& flow, double velocity_dt) override {
-        const double cap = prepare_deposit(flow, velocity_dt);
-        for_each_tile_in_turn(flow.active, [&](Index n) {
-            if (!flow.rest.deposits[n]) return;
-            const Index tile = flow.active.tile[n];
-            touch_deposits(flow, n);
-            Sums sums;
-            StencilMarks marks = flow.marks_of(tile);
-            for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
-                deposit_batch(flow, first, end, cap, at_side, marks, sums);
-            });
-            flow.reach[tile] = marks.reach(kReachBefore, kReachAfter);
-            deposited_[tile] = sums.points();
-        });
-        finish_deposit(flow);
-        return total(flow.active, deposited_);
-    }
-
-    PointSums gather(Flow& flow, double dt) override {
-        prepare_gather(flow);
-        choose_gathers(flow);
-        for_each_tile(flow.active, [&](Index n) {
-            if (!flow.rest.gathers[n]) return;
-            Sums sums;
-            touch_motions(flow, n);
-            for_each_batch(flow, n, [&](Index first, Index end, bool) { gather_batch(flow, first, end, dt, sums); });
-            store_gathered(flow, n, sums);
-        });
-        note_changed(flow);
-        return total(flow.active, gathered_);
-    }
-
-    /// Points are still in the first cache when they deposit.
-    PointSums carry(Flow& flow, double dt, double velocity_dt) override {
-        if (some_asleep(flow)) return carry_apart(flow, dt, velocity_dt);  // what sleeps is chosen between the two
-        prepare_gather(flow);
-        const double cap = prepare_deposit(flow, velocity_dt);
-        for_each_tile_in_turn(flow.active, [&](Index n) {
-            const Index tile = flow.active.tile[n];
-            touch_motions(flow, n);
-            touch_deposits(flow, n);
-            Sums moved, deposited;
-            StencilMarks marks = flow.marks_of(tile);
-            for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
-                gather_batch(flow, first, end, dt, moved);
-                if (moved.rare.bad < 0) deposit_batch(flow, first, end, cap, at_side, marks, deposited);
-            });
-            flow.reach[tile] = marks.reach(kReachBefore, kReachAfter);
-            deposited_[tile] = deposited.points();
-            store_gathered(flow, n, moved);
-        });
-        finish_deposit(flow);
-        PointSums sums = total(flow.active, gathered_);
-        sums.stress_power = total(flow.active, deposited_).stress_power;
-        return sums;
-    }
-
-    void probe(Flow& flow, Probe& out) override {
-        const std::size_t count = static_cast<std::size_t>(flow.particles.count());
-        for (auto* array : {&out.vx, &out.vy, &out.cxx, &out.cxy, &out.cyx, &out.cyy, &out.depth}) array->resize(count);
-        for_each_tile(flow.active, [&](Index n) {
-            for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
-                const Gathered g(flow, p, lanes);
-                store(&out.vx[p], g.vx, lanes);
-                store(&out.vy[p], g.vy, lanes);
-                store(&out.cxx[p], g.cxx, lanes);
-                store(&out.cxy[p], g.cxy, lanes);
-                store(&out.cyx[p], g.cyx, lanes);
-                store(&out.cyy[p], g.cyy, lanes);
-                store(&out.depth[p], g.depth, lanes);
-            });
-        });
-    }
-
-private:
-    /// PointSums of the lanes, in a fixed order.
-    struct Sums {
-        Double4 mass = {}, px = {}, py = {}, p_abs = {}, speed = {}, signal = {}, shift = {}, motion = {},
-                stress_power = {};
-        PointSums rare;
-        PointSums points() const {
-            PointSums s = rare;
-            s.mass += sum(mass);
-            s.px += sum(px);
-            s.py += sum(py);
-            s.p_abs += sum(p_abs);
-            s.stress_power += sum(stress_power);
-            s.max_speed = std::max(s.max_speed, largest(speed));
-            s.max_signal = std::max(s.max_signal, largest(signal));
-            s.max_shift = std::max(s.max_shift, largest(shift));
-            return s;
-        }
-    };
-
-    void store_gathered(Flow& flow, Index n, const Sums& sums) {
-        gathered_[flow.active.tile[n]] = sums.points();
-        note_rest(flow, n, largest(sums.motion) == 0.0);
-    }
-
-    void prepare_gather(const Flow& flow) {
-        make_room(flow);
-        assign_sparingly(gone_, static_cast<std::size_t>(flow.particles.count()), std::uint8_t{0});
-    }
-
-    /// Clears what will be deposited; returns the largest 2 mu_eff that is stable explicitly [Pa s].
-    double prepare_deposit(Flow& flow, double velocity_dt) {
-        make_room(flow);
-        start_deposit(flow, kReachBefore, kReachAfter);
-        return most_viscosity(flow, velocity_dt);
-    }
-
-    template <class Body>
-    static void for_each_batch(const Flow& flow, Index n, Body&& body) {
-        const bool at_side = !flow.walls && near_side(flow.grid, flow.active.tile[n]);
-        const Index last = flow.active.begin[n + 1];
-        for (Index first = flow.active.begin[n]; first < last; first += kBatch) {
-            const Index end = std::min(first + kBatch, last);
-            touch_points(flow.particles, first, end);
-            body(first, end, at_side);
-        }
-    }
-
-    /// All particles side by side (base/touch.h).
-    static void touch_points(const Particles& c, Index first, Index end) {
-        const Carried<Real>& h = c.carried<Real>();
-        const double* const placed[] = {c.x.data(), c.y.data(), c.mass.data()};
-        const Real* const carried[] = {h.r1x.data(), h.r1y.data(), h.r2x.data(),  h.r2y.data(),
-                                       h.vx.data(),  h.vy.data(),  h.cxx.data(),  h.cxy.data(),
-                                       h.cyx.data(), h.cyy.data(), h.depth.data()};
-        for (Index p = first; p < end; p += kCacheLine / sizeof(double)) {
-            for (const double* particle : placed) touch(particle + p);
-            for (const Real* particle : carried) touch(particle + p);
-        }
-    }
-
-    static void touch_motions(const Flow& flow, Index n) {
-        for_each_row_of_full(flow.grid, flow.active, n,
-                             [&](Index k, Index count) { touch(flow.nodes.motions() + k, count); });
-    }
-    static void touch_deposits(const Flow& flow, Index n) {
-        for_each_row_of_full(flow.grid, flow.active, n, [&](Index k, Index count) {
-            touch(flow.nodes.deposits() + k, count);
-            touch(flow.nodes.mass.data() + k, count);
-            touch(flow.nodes.column_mass.data() + k, count);
-        });
-    }
-
-    /// Not inlined, nor is deposit_batch. Where a product and a sum become one rounding is the compiler's choice at
-    /// each place. The bits must not depend on which pass calls them.
-    [[gnu::noinline]] void gather_batch(Flow& flow, Index first, Index end, double dt, Sums& sums) {
-        for_each_four(first, end, [&](Index p, int lanes) { gather_four(flow, p, lanes, dt, sums); });
-    }
+    explicit DepositsOf(const Law& law) : law_(law) {}
 
     /// Stresses first: a chain of divisions and roots that points wait for side by side.
-    [[gnu::noinline]] void deposit_batch(Flow& flow, Index first, Index end, double cap, bool at_side,
-                                         StencilMarks& marks, Sums& sums) {
+    [[gnu::noinline]] void deposit(Flow& flow, Index first, Index end, double cap, bool at_side, StencilMarks& marks,
+                                   Sums& sums) const override {
         PlaneOf<Double4> internal_force[kBatch / 4];
         if constexpr (kStress) {
             Double4 shear[kBatch / 4];
@@ -200,8 +77,9 @@ private:
         for_each_four(first, end, [&](Index p, int lanes) { deposit_particles(flow, p, lanes, at_side); });
     }
 
-    void deposit_four(Flow& flow, Index p, int lanes, const PlaneOf<Double4>& internal_force, StencilMarks& marks,
-                      Sums& sums) {
+private:
+    static void deposit_four(Flow& flow, Index p, int lanes, const PlaneOf<Double4>& internal_force,
+                             StencilMarks& marks, Sums& sums) {
         const Particles& c = flow.particles;
         const Carried<Real>& held = c.carried<Real>();
         const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes), m = load(&c.mass[p], lanes);
@@ -258,6 +136,149 @@ private:
         const Double4 volume = depth > flow.dry_depth() ? per_density * load(&c.mass[p], lanes) : zero;
         sums.stress_power += volume * (sigma.xx * rate.xx + sigma.yy * rate.yy + 2.0 * sigma.xy * rate.xy);
         return scaled(sigma, per_cell * volume);
+    }
+
+    Law law_;
+};
+
+/// No part of it depends on the rheology.
+template <class Real>
+class PackedKernel final : public TransferKernel {
+public:
+    explicit PackedKernel(std::unique_ptr<PointDeposits> deposits) : deposits_(std::move(deposits)) {}
+
+    PointSums deposit(Flow& flow, double velocity_dt) override {
+        const double cap = prepare_deposit(flow, velocity_dt);
+        for_each_tile_in_turn(flow.active, [&](Index n) {
+            if (!flow.rest.deposits[n]) return;
+            const Index tile = flow.active.tile[n];
+            touch_deposits(flow, n);
+            Sums sums;
+            StencilMarks marks = flow.marks_of(tile);
+            for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
+                deposits_->deposit(flow, first, end, cap, at_side, marks, sums);
+            });
+            flow.reach[tile] = marks.reach(kReachBefore, kReachAfter);
+            deposited_[tile] = sums.points();
+        });
+        finish_deposit(flow);
+        return total(flow.active, deposited_);
+    }
+
+    PointSums gather(Flow& flow, double dt) override {
+        prepare_gather(flow);
+        choose_gathers(flow);
+        for_each_tile(flow.active, [&](Index n) {
+            if (!flow.rest.gathers[n]) return;
+            Sums sums;
+            touch_motions(flow, n);
+            for_each_batch(flow, n, [&](Index first, Index end, bool) { gather_batch(flow, first, end, dt, sums); });
+            store_gathered(flow, n, sums);
+        });
+        note_changed(flow);
+        return total(flow.active, gathered_);
+    }
+
+    /// Points are still in the first cache when they deposit.
+    PointSums carry(Flow& flow, double dt, double velocity_dt) override {
+        if (some_asleep(flow)) return carry_apart(flow, dt, velocity_dt);  // what sleeps is chosen between the two
+        prepare_gather(flow);
+        const double cap = prepare_deposit(flow, velocity_dt);
+        for_each_tile_in_turn(flow.active, [&](Index n) {
+            const Index tile = flow.active.tile[n];
+            touch_motions(flow, n);
+            touch_deposits(flow, n);
+            Sums moved, deposited;
+            StencilMarks marks = flow.marks_of(tile);
+            for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
+                gather_batch(flow, first, end, dt, moved);
+                if (moved.rare.bad < 0) deposits_->deposit(flow, first, end, cap, at_side, marks, deposited);
+            });
+            flow.reach[tile] = marks.reach(kReachBefore, kReachAfter);
+            deposited_[tile] = deposited.points();
+            store_gathered(flow, n, moved);
+        });
+        finish_deposit(flow);
+        PointSums sums = total(flow.active, gathered_);
+        sums.stress_power = total(flow.active, deposited_).stress_power;
+        return sums;
+    }
+
+    void probe(Flow& flow, Probe& out) override {
+        const std::size_t count = static_cast<std::size_t>(flow.particles.count());
+        for (auto* array : {&out.vx, &out.vy, &out.cxx, &out.cxy, &out.cyx, &out.cyy, &out.depth}) array->resize(count);
+        for_each_tile(flow.active, [&](Index n) {
+            for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
+                const Gathered g(flow, p, lanes);
+                store(&out.vx[p], g.vx, lanes);
+                store(&out.vy[p], g.vy, lanes);
+                store(&out.cxx[p], g.cxx, lanes);
+                store(&out.cxy[p], g.cxy, lanes);
+                store(&out.cyx[p], g.cyx, lanes);
+                store(&out.cyy[p], g.cyy, lanes);
+                store(&out.depth[p], g.depth, lanes);
+            });
+        });
+    }
+
+private:
+    void store_gathered(Flow& flow, Index n, const Sums& sums) {
+        gathered_[flow.active.tile[n]] = sums.points();
+        note_rest(flow, n, largest(sums.motion) == 0.0);
+    }
+
+    void prepare_gather(const Flow& flow) {
+        make_room(flow);
+        assign_sparingly(gone_, static_cast<std::size_t>(flow.particles.count()), std::uint8_t{0});
+    }
+
+    /// Clears what will be deposited; returns the largest 2 mu_eff that is stable explicitly [Pa s].
+    double prepare_deposit(Flow& flow, double velocity_dt) {
+        make_room(flow);
+        start_deposit(flow, kReachBefore, kReachAfter);
+        return most_viscosity(flow, velocity_dt);
+    }
+
+    template <class Body>
+    static void for_each_batch(const Flow& flow, Index n, Body&& body) {
+        const bool at_side = !flow.walls && near_side(flow.grid, flow.active.tile[n]);
+        const Index last = flow.active.begin[n + 1];
+        for (Index first = flow.active.begin[n]; first < last; first += kBatch) {
+            const Index end = std::min(first + kBatch, last);
+            touch_points(flow.particles, first, end);
+            body(first, end, at_side);
+        }
+    }
+
+    /// All particles side by side (base/touch.h).
+    static void touch_points(const Particles& c, Index first, Index end) {
+        const Carried<Real>& h = c.carried<Real>();
+        const double* const placed[] = {c.x.data(), c.y.data(), c.mass.data()};
+        const Real* const carried[] = {h.r1x.data(), h.r1y.data(), h.r2x.data(),  h.r2y.data(),
+                                       h.vx.data(),  h.vy.data(),  h.cxx.data(),  h.cxy.data(),
+                                       h.cyx.data(), h.cyy.data(), h.depth.data()};
+        for (Index p = first; p < end; p += kCacheLine / sizeof(double)) {
+            for (const double* particle : placed) touch(particle + p);
+            for (const Real* particle : carried) touch(particle + p);
+        }
+    }
+
+    static void touch_motions(const Flow& flow, Index n) {
+        for_each_row_of_full(flow.grid, flow.active, n,
+                             [&](Index k, Index count) { touch(flow.nodes.motions() + k, count); });
+    }
+    static void touch_deposits(const Flow& flow, Index n) {
+        for_each_row_of_full(flow.grid, flow.active, n, [&](Index k, Index count) {
+            touch(flow.nodes.deposits() + k, count);
+            touch(flow.nodes.mass.data() + k, count);
+            touch(flow.nodes.column_mass.data() + k, count);
+        });
+    }
+
+    /// Not inlined, as DepositsOf::deposit. Where a product and a sum become one rounding is the compiler's choice at each
+    /// place. The bits must not depend on which pass calls them.
+    [[gnu::noinline]] void gather_batch(Flow& flow, Index first, Index end, double dt, Sums& sums) {
+        for_each_four(first, end, [&](Index p, int lanes) { gather_four(flow, p, lanes, dt, sums); });
     }
 
     /// Velocity, its gradient (TPIC: sum v (x) grad N) and depth at four points. Also the change of the two-cell wave
@@ -421,17 +442,16 @@ private:
         store(ry, y + dt * (g.cyx * x + g.cyy * y), lanes);
     }
 
-    Law law_;
+    std::unique_ptr<PointDeposits> deposits_;
 };
 
 template <class Real>
 std::unique_ptr<TransferKernel> packed_kernel(const Scene& scene) {
-    if (scene.rheologies()) return std::make_unique<PackedKernel<RheologyOfEachNode, Real>>(RheologyOfEachNode{});
-    return std::visit(
-        [](const auto& law) -> std::unique_ptr<TransferKernel> {
-            return std::make_unique<PackedKernel<std::decay_t<decltype(law)>, Real>>(law);
-        },
-        scene.rheology);
+    const auto deposits = [](const auto& law) -> std::unique_ptr<PointDeposits> {
+        return std::make_unique<DepositsOf<std::decay_t<decltype(law)>, Real>>(law);
+    };
+    return std::make_unique<PackedKernel<Real>>(scene.rheologies() ? deposits(RheologyOfEachNode{})
+                                                                   : std::visit(deposits, scene.rheology));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
+#include <variant>
 
 #include "structured/node_forces.h"
 #include "structured/node_water.h"
@@ -404,10 +405,13 @@ void move_nodes(StructuredBody& body, const StepTimes& times) {
         else
             move_nodes_by<false>(law, body, times);
     };
+    // Grains nearly always slide by Coulomb's law.
     if (body.flow.laws)
         move(LawOfEachNode{});
+    else if (const auto* coulomb = std::get_if<bed::Coulomb>(&body.bed_law))
+        move(*coulomb);
     else
-        std::visit(move, body.bed_law);
+        move(AnyLaw(body.bed_law));
 }
 
 void sample_nodes(StructuredBody& body) {

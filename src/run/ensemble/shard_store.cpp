@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
-#include <regex>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/pattern.h"
 #include "base/version.h"
 #include "ensemble/sample_table.h"
 #include "io/hdf5_peaks.h"
@@ -114,13 +114,13 @@ std::vector<fs::path> row_files(const fs::path& dir) {
 }  // namespace
 
 void remove_leftovers(const fs::path& folder) {
-    static const std::regex half_written(
+    static const Pattern half_written(
         "\\.(peaks|runs|probability|quantile|mean|first_order|total|hazard|terrain|maps|reached|report|ensemble|"
         "view|runout|gauges|convergence|scatter|samples|calibrate|posterior|predict).*\\.tmp\\d+(\\..*)?");
     std::vector<fs::path> found;
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(folder, ignored))
-        if (std::regex_match(entry.path().filename().string(), half_written)) found.push_back(entry.path());
+        if (half_written.matches(entry.path().filename().string())) found.push_back(entry.path());
     for (const fs::path& file : found) fs::remove(file, ignored);
 }
 

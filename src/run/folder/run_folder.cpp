@@ -8,11 +8,11 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <regex>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/layer_name.h"
+#include "base/pattern.h"
 #include "run/folder/products.h"
 #include "run/folder/record_file.h"
 
@@ -99,17 +99,17 @@ std::vector<fs::path> folders_of(const fs::path& run_dir, const ProductKind& kin
 }
 
 /// To make one of a text takes longer than to match a folder's names with it. They are few and often used.
-const std::regex& pattern_of(const ProductKind& kind) {
-    static thread_local std::map<std::string, std::regex> known;
+const Pattern& pattern_of(const ProductKind& kind) {
+    static thread_local std::map<std::string, Pattern> known;
     const auto found = known.find(kind.pattern);
-    return found != known.end() ? found->second : known.emplace(kind.pattern, std::regex(kind.pattern)).first->second;
+    return found != known.end() ? found->second : known.emplace(kind.pattern, Pattern(kind.pattern)).first->second;
 }
 
 std::vector<fs::path> files_in(const fs::path& folder, const ProductKind& kind) {
     std::vector<fs::path> found;
     std::error_code none;
     for (const auto& entry : fs::directory_iterator(folder, none))
-        if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), pattern_of(kind)))
+        if (entry.is_regular_file() && pattern_of(kind).matches(entry.path().filename().string()))
             found.push_back(entry.path());
     std::sort(found.begin(), found.end());
     return found;
@@ -162,10 +162,10 @@ bool same_file(const fs::path& a, const fs::path& b) {
 bool grows(const ProductKind& kind) {
     for (const char* folder : {"particles", "grid", "profiles", "gauges", "sections", "barriers", "insitu", "insitu/*"})
         if (kind.folder == folder) return true;
-    static const std::regex growing(
+    static const Pattern growing(
         "(history|particles|grid|profiles|barrier(s\\\\\\.p|_)|run\\\\\\.(json|\\()|terrain|checkpoint|case|resolved)."
         "*");
-    return kind.folder.empty() && std::regex_match(kind.pattern, growing);
+    return kind.folder.empty() && growing.matches(kind.pattern);
 }
 
 /// By run.json: what its list lacks or, when the run did not end, what was there before it. Without a run.json
@@ -247,17 +247,14 @@ std::string names_of(const fs::path& run_dir, const std::vector<fs::path>& files
 /// A product that a killed process was writing when it died has a name like ".peak_depth.tmp4711.tif".
 void remove_half_written(const fs::path& run_dir) {
     // SQLite, which writes GeoPackages, has files of its own next to one
-    static const std::regex half_written("\\.(.*)\\.tmp\\d+(\\..*?)?(-journal|-wal|-shm)?");
+    static const Pattern half_written("\\.(.*)\\.tmp\\d+(\\..*?)?(-journal|-wal|-shm)?");
     std::error_code ignored;
     for (const ProductKind& kind : product_kinds()) {
         std::vector<fs::path> found;
         for (const fs::path& folder : folders_of(run_dir, kind))
             for (const auto& entry : fs::directory_iterator(run_dir / folder, ignored)) {
-                const std::string name = entry.path().filename().string();
-                std::smatch parts;
-                if (std::regex_match(name, parts, half_written) &&
-                    std::regex_match(parts[1].str() + parts[2].str(), pattern_of(kind)))
-                    found.push_back(entry.path());
+                const auto parts = half_written.groups(entry.path().filename().string());
+                if (parts && pattern_of(kind).matches((*parts)[0] + (*parts)[1])) found.push_back(entry.path());
             }
         for (const fs::path& file : found) fs::remove(file, ignored);
     }
