@@ -79,6 +79,8 @@ void read_survey(const CaseFile& file, const GisReader& reader, Scene& scene, Pr
 double rise_across(const Polyline& line, const Raster& bed);
 /// All [[section]] of a scene that has its terrain; down the slope of the ground counts as positive.
 std::vector<Section> read_sections(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems);
+/// Of a scene that has its inflows: those that lie so near to one that they miss some of it.
+void remark_on_sections_at_inflows(Scene& scene);
 
 /// All [[inflow]] of a scene that has its terrain and its laws. What is wrong with them goes to `problems`, what they
 /// bring to the scene's log.
