@@ -284,6 +284,17 @@ TEST_CASE("Holes inside the terrain are remarked upon, as walls or as open, with
     CHECK_FALSE(build_scene(CaseFile::parse(plain, "slide/case.toml"), slope(0.5)).hole_top.has_value());
 }
 
+TEST_CASE("An inflow faster than any landslide is remarked upon", "[scene][remarks][inflow]") {
+    const auto with = [](double velocity) {
+        return case_of(coulomb + "bed.mu = 0.4", "2.0",
+                       fmt::format("[[inflow]]\nname = \"torrent\"\nline = [[1100, 2050], [1100, 2090]]\nvolume = "
+                                   "100\npeak = 10\nvelocity = {}\n",
+                                   velocity));
+    };
+    CHECK(remarks(with(500.0), slope(0.5), "expected 150 m/s at most").size() == 1);
+    CHECK(remarks(with(50.0), slope(0.5), "expected 150 m/s at most").empty());
+}
+
 // At the line itself it had a half of what came in, two cells on 92 % of it, from there on all.
 TEST_CASE("A section within three cells of an inflow is remarked upon", "[scene][remarks][sections]") {
     const auto with = [](const std::string& section, const std::string& inflow) {
