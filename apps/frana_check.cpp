@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <optional>
 #include <type_traits>
 
 #include "base/free_memory.h"
+#include "compare/deposit.h"
 #include "compare/expected_width.h"
 #include "compare/flow_width.h"
 #include "compare/runout.h"
@@ -233,11 +235,20 @@ double loose_way(const Scene& scene, const Vec2& start) {
     return loose_way(path, wider->fields(part_of(bed, along)).loose);
 }
 
+/// Loose material on all of the terrain [m3]; nothing where memory does not allow to read it.
+std::optional<double> loose_volume(const Scene& scene) {
+    constexpr double kBytesPerNode = 64.0;  // elevations, and what is read on them
+    const WiderTerrain* wider = scene.wider.get();
+    if (wider == nullptr) return volume_of(scene.erodible->depth);
+    if (!wider->fields || kBytesPerNode * static_cast<double>(wider->grid.size()) > free_memory()) return {};
+    return volume_of(wider->fields(bed_over(scene.bed, wider, wider->grid)).loose);
+}
+
 /// Growth of a flow that takes up its bed in proportion to its way, on the steepest path over loose material, up to the
 /// terrain's edge.
 /// There is a remark where that is more than a hundredfold.
 std::string growth_text(const BuiltScene& built) {
-    constexpr double kHundredfold = 100.0;
+    constexpr double kHundredfold = 100.0, kMost = 1e12;  // more than the largest landslides, whatever the number [m3]
     const Scene& scene = built.scene;
     const auto* law = scene.erodible ? std::get_if<erosion::Growth>(&scene.erodible->law) : nullptr;
     const std::optional<Vec2> start = law ? flow_start(scene) : std::nullopt;
@@ -248,11 +259,15 @@ std::string growth_text(const BuiltScene& built) {
     for (const Inflow& inflow : scene.inflows) volume += facts_of(inflow, scene.gravity).volume;
     const double factor = std::exp(law->growth * way);
     if (!(factor > kHundredfold)) return "";
+    const double grown = volume * factor;
+    const std::optional<double> loose = loose_volume(scene);
+    const bool beyond = loose && (grown - volume) * scene.density > *loose * scene.erodible->density;
+    const std::string limit = beyond ? fmt::format(", though there are only {:.4g} m3 of it", *loose) : "";
     return fmt::format(
-        "remark      erodible.growth: found {:.4g} /m, by which {:.4g} m3 would become {:.3g} m3 over {:.4g} m of "
-        "loose "
-        "material on the steepest path; expected growth to {:g} times at most; give a smaller one\n",
-        law->growth, volume, volume * factor, way, kHundredfold);
+        "remark      erodible.growth: found {:.4g} /m, by which {:.4g} m3 would become {} over {:.4g} m of loose "
+        "material on the steepest path{}; expected growth to {:g} times at most; give a smaller one\n",
+        law->growth, volume, grown < kMost ? fmt::format("{:.3g} m3", grown) : fmt::format("{:g} m3 or more", kMost),
+        way, limit, kHundredfold);
 }
 
 std::string seconds_text(double seconds) {

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "base/atomic_file.h"
+#include "base/constants.h"
 #include "catch.h"
 #include "io/gdal_features.h"
 #include "io/gdal_reader.h"
@@ -318,6 +319,40 @@ TEST_CASE("A house is not hit by a flow two cells beside it with a film between"
     CHECK(std::isnan(passed.time));
     set(18, 0.2, 1e3, 12.0);  // the flow came onto it, and stands on the pixels around it
     CHECK(hit_on(house, rasters).depth == 6.0);
+}
+
+// Pixels on the diagonal at a corner counted for both sides, so that the lee had the depth of what passed the house.
+TEST_CASE("What passes the corner of a house is not at its lee side", "[barriers][results]") {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const double cell = GENERATE(2.0, 4.0, 5.0);
+    const GridGeometry grid{50, 50, 0.5 * cell, 0.5 * cell, cell};
+    std::vector<ProductRaster> rasters;
+    for (const char* name : {"peak_depth", "peak_dynamic_pressure", "arrival_time"})
+        rasters.push_back({name, "", "", Raster::filled(grid, kNone)});
+    const double from = 10.0 * cell, to = 13.0 * cell;  // edges of pixels
+    for (Index j = 0; j < grid.ny; ++j)
+        for (Index i = 0; i < grid.nx; ++i) {
+            const bool wake = grid.x(i) > from && grid.y(j) > from && grid.y(j) < to;  // behind it, as it flows east
+            if (!wake) rasters[0].raster.at(i, j) = 1.5, rasters[1].raster.at(i, j) = 6e4;
+            if (!wake) rasters[2].raster.at(i, j) = 1.0;
+        }
+    Polygons house;
+    house.parts = {Polygon{{{{from, from}, {to, from}, {to, to}, {from, to}, {from, from}}}}};
+    const BarrierHit hit = hit_on(house, rasters);
+    CHECK(std::isnan(hit.side_depth[1]));
+    CHECK(std::isnan(hit.side_pressure[1]));
+    for (const std::size_t side : {0, 2, 3}) CHECK(hit.side_depth[side] == 1.5);
+    Polygons tower;  // round, with sides shorter than a cell, and one that is narrower than a cell
+    std::vector<Vec2> ring;
+    for (int n = 0; n < 32; ++n)
+        ring.emplace_back(from + cell * std::cos(n * constants::kPi / 16),
+                          from + cell * std::sin(n * constants::kPi / 16));
+    tower.parts = {Polygon{{ring}}};
+    for (ProductRaster& raster : rasters) raster.raster = Raster::filled(grid, 1.0);
+    for (const double depth : hit_on(tower, rasters).side_depth) CHECK(depth == 1.0);
+    const double thin = from + 0.3 * cell;
+    tower.parts = {Polygon{{{{from, from}, {thin, from}, {thin, to}, {from, to}}}}};
+    for (const double depth : hit_on(tower, rasters).side_depth) CHECK(depth == 1.0);
 }
 
 // Points reach up to the face. Pixels with their middle on it had no side, and in cases/wall the deepest of all is one.

@@ -3,6 +3,7 @@
 #include <gdal_priv.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -423,6 +424,37 @@ TEST_CASE("series.nc has depth, speed and velocity at every output, by CF's name
     CHECK(depths.root->OpenMDArray("depth"));
     CHECK_FALSE(depths.root->OpenMDArray("speed"));
     CHECK_FALSE(fs::exists(slope.path() / "depth/run.qgz"));
+}
+
+// Its elevation is that of the last output, and nothing told of the bed at the others.
+TEST_CASE("series.nc has what the bed has gained and lost at every output", "[gis][netcdf][erosion]") {
+    GDALAllRegister();
+    if (GetGDALDriverManager()->GetDriverByName("netCDF") == nullptr) {
+        WARN("not tested: this GDAL has no netCDF");
+        return;
+    }
+    const Slope slope;
+    const std::string formats = R"(--set 'output.formats=["geotiff","netcdf"]')",
+                      loose =
+                          formats + " --set erodible.law=growth --set erodible.depth=0.5 --set erodible.growth=0.02";
+    const fs::path run = slope.run("run", loose);
+    const Series series(run / "series.nc");
+    const auto change = series.values<float>("bed_change", GDT_Float32);
+    const Band last(run / "rasters/bed_change.tif");
+    std::array<double, 5> lost{};
+    for (std::size_t j = 0; j < 20; ++j)
+        for (std::size_t i = 0; i < 30; ++i) {
+            for (std::size_t t = 0; t < 5; ++t) lost[t] -= double{change[(t * 20 + j) * 30 + i]};
+            const float theirs = last.values[(19 - j) * 30 + i];
+            CHECK(change[(4 * 20 + j) * 30 + i] == (theirs > -100.0F ? theirs : 0.0F));
+        }
+    CHECK(lost[0] == 0.0);
+    for (std::size_t t = 1; t < 5; ++t) CHECK(lost[t] > lost[t - 1]);
+    CHECK_THAT(series.root->OpenMDArray("elevation")->GetAttribute("long_name")->ReadAsString(), Contains("last time"));
+    slope.run("parts", loose + " --until 1.5");
+    slope.run("parts", loose + " --resume");
+    CHECK(text_of(slope.path() / "parts/series.nc") == text_of(run / "series.nc"));
+    CHECK_FALSE(Series(slope.run("rock", formats) / "series.nc").root->OpenMDArray("bed_change"));
 }
 
 TEST_CASE("series.nc keeps coordinate systems that CF has no names for, and a full disk costs no run",

@@ -291,6 +291,31 @@ TEST_CASE("The page of a flood tells what came in, where its front is measured f
     check(data_of(text_of(slope.run_dir() / "figures" / "view.html")));
 }
 
+// It was divided by the density of the flow, while studies and rasters have the bed's own.
+TEST_CASE("The page tells how much of the bed was taken as the bed had it", "[page][erosion]") {
+    if (cannot_show()) return;
+    const Slope slope;
+    const Outcome done = slope.run_case(
+        "[terrain]\ndem = \"dem.asc\"\n[[inflow]]\nname = \"torrent\"\nline = [[1050, 2035], [1050, 2065]]\nvolume = "
+        "400\npeak = 80\nvelocity = 4\n[material]\ndensity = 1600\n[material.bed]\nlaw = \"coulomb\"\nmu = "
+        "0.2\n[erodible]\ndepth = 0.5\ndensity = 2000\nlaw = \"growth\"\ngrowth = 0.005\n[time]\nend = "
+        "10\n[output]\nevery = 5\nformats = [\"vtk\", \"geotiff\", \"web\"]\n");
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    const Json record = Json::parse(text_of(slope.run_dir() / "run.json"));
+    const double taken = record.at("budgets").at("bed").at("taken_of_bed").get<double>() / 2000.0;
+    REQUIRE((taken > 10.0 && taken < 1000.0));
+    const auto shown = [&] {
+        std::map<std::string, std::string> facts;
+        const Json data = data_of(text_of(slope.run_dir() / "figures" / "view.html"));
+        for (const Json& fact : data.at("facts")) facts[fact[0]] = fact[1];
+        return std::stod(facts["Taken of the bed"]);
+    };
+    CHECK(shown() == Approx(taken).epsilon(1e-2));  // three digits
+    REQUIRE(call_frana(slope.path(), "figures run --web").code == 0);
+    CHECK(shown() == Approx(taken).epsilon(1e-2));
+}
+
 TEST_CASE("The page of water has its volumes, drawn again too", "[page]") {
     if (cannot_show()) return;
     const Slope slope;

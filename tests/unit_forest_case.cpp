@@ -1,4 +1,6 @@
 // [forest] of a case: its detrainment, its outline, its limits, and what is wrong with them.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "scene/build_scene.h"
@@ -37,6 +39,14 @@ TEST_CASE("A case has no forest unless it gives a detrainment above 0", "[forest
     const Scene none = scene_of(slope_gis(), "detrainment = 0\n");
     CHECK_FALSE(none.forest);
     CHECK(has(remarks_of(none), "forest.detrainment: it is 0 everywhere on the terrain: no forest"));
+}
+
+TEST_CASE("A detrainment beyond what circulates is remarked upon", "[forest][scene][remarks]") {
+    const std::string expected = "expected 5 to 150 Pa, as in cases/PARAMETERS.md";
+    for (const char* fit : {"5", "50", "150"})
+        CHECK_FALSE(has(remarks_of(scene_of(slope_gis(), fmt::format("detrainment = {}\n", fit))), expected));
+    for (const char* far : {"1", "5000"})
+        CHECK(has(remarks_of(scene_of(slope_gis(), fmt::format("detrainment = {}\n", far))), expected));
 }
 
 TEST_CASE("A forest has its detrainment everywhere, or where its outline or its raster says", "[forest][scene]") {

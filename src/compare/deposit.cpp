@@ -24,6 +24,13 @@ Raster deepest_cover(const Raster& peak_depth, const Raster& lying) {
     return cover;
 }
 
+double volume_of(const Raster& depth) {
+    double sum = 0.0;
+    for (const double h : depth.values)
+        if (h > 0.0) sum += h;
+    return sum * depth.geometry.cell * depth.geometry.cell;
+}
+
 DepositErrors deposit_errors(const Raster& simulated, const Raster& surveyed, double limit) {
     DepositErrors errors;
     double absolute = 0.0, square = 0.0;

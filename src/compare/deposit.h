@@ -12,6 +12,9 @@ Raster with_deposit(const Raster& final_depth, const Raster* deposited);
 /// ground which no flow was ever deep on. NaN in one of them counts as nothing.
 Raster deepest_cover(const Raster& peak_depth, const Raster& lying);
 
+/// Of all depths above zero [m3].
+double volume_of(const Raster& depth);
+
 struct DepositErrors {
     double simulated_volume = 0.0;   ///< where the survey has data [m3]
     double surveyed_volume = 0.0;    ///< [m3]

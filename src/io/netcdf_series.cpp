@@ -30,23 +30,40 @@ constexpr Variable kVariables[] = {{"depth", "depth", 0, "m", "depth of the flow
                                    {"velocity_x", "velocity", 0, "m s-1", "velocity of the flow to the east"},
                                    {"velocity_y", "velocity", 1, "m s-1", "velocity of the flow to the north"}};
 
-/// The wet nodes of an output.
+constexpr Variable kBedChange = {"bed_change", "bed_change", 0, "m",
+                                 "what the bed has gained since the start, below 0 what it has lost"};
+
+/// The wet nodes of an output, and those whose bed is no more what it was at the start.
 struct Moment {
     double time = 0.0;
     GridGeometry grid;
     std::vector<Index> nodes;
     std::vector<float> values;  ///< all nodes of the first variable, then of the next
+    bool bed_changes = false;   ///< the run has a bed that can
+    std::vector<Index> changed;
+    std::vector<float> change;  ///< of the bed there [m]
 
     void serialize(Archive& archive) {
         archive.numbers("place", {&time, &grid.x0, &grid.y0, &grid.cell});
         archive.number("nx", grid.nx);
         archive.number("ny", grid.ny);
         archive.array("nodes", nodes);
-        std::vector<std::uint8_t> bytes(values.size() * sizeof(float));
-        if (!bytes.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
-        archive.array("values", bytes);
-        values.resize(bytes.size() / sizeof(float));
-        if (!bytes.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
+        serialize(archive, "values", values);
+        Index changes = bed_changes ? 1 : 0;
+        archive.number("bed_changes", changes);
+        bed_changes = changes != 0;
+        if (!bed_changes) return;
+        archive.array("changed", changed);
+        serialize(archive, "change", change);
+    }
+
+private:
+    static void serialize(Archive& archive, const char* name, std::vector<float>& numbers) {
+        std::vector<std::uint8_t> bytes(numbers.size() * sizeof(float));
+        if (!bytes.empty()) std::memcpy(bytes.data(), numbers.data(), bytes.size());
+        archive.array(name, bytes);
+        numbers.resize(bytes.size() / sizeof(float));
+        if (!bytes.empty()) std::memcpy(numbers.data(), bytes.data(), bytes.size());
     }
 };
 
@@ -142,6 +159,7 @@ public:
         for (const Variable& variable : kVariables)
             if (fields.empty() || std::find(fields.begin(), fields.end(), variable.field) != fields.end())
                 variables_.push_back(variable);
+        tells_change_ = fields.empty() || std::find(fields.begin(), fields.end(), kBedChange.field) != fields.end();
         gdal::register_drivers();
         driver_ = GetGDALDriverManager()->GetDriverByName("netCDF");
         if (driver_ == nullptr || driver_->GetMetadataItem(GDAL_DCAP_CREATE_MULTIDIMENSIONAL) == nullptr)
@@ -165,6 +183,7 @@ public:
                 moment.values.push_back(
                     as_float(field->data[node * field->components + variable.component], variable.name, moment.time));
         }
+        note_change(frame, moment);
         if (!moments_.empty() && !(moment.time > moments_.back().time)) moments_.pop_back();
         moments_.push_back(std::move(moment));
     }
@@ -196,6 +215,17 @@ public:
     }
 
 private:
+    void note_change(const Frame& frame, Moment& moment) const {
+        const Field* change = frame.node(kBedChange.field);
+        moment.bed_changes = tells_change_ && change != nullptr;
+        if (!moment.bed_changes) return;
+        for (Index node = 0; node < frame.grid.size(); ++node) {
+            if (change->data[node] == 0.0 || std::isnan(change->data[node])) continue;
+            moment.changed.push_back(node);
+            moment.change.push_back(as_float(change->data[node], kBedChange.name, moment.time));
+        }
+    }
+
     bool write(GDALGroup& root, const Frame& last) const {
         const GridGeometry& grid = last.grid;
         note(root, "Conventions", "CF-1.8");
@@ -218,11 +248,24 @@ private:
             for (std::size_t t = 0; t < moments_.size(); ++t)
                 if (!field || !write_plane(*field, Index(t), grid, plane(moments_[t], v, grid))) return false;
         }
-        return write_bed(root, {y, x}, last, placed);
+        const bool changes = !moments_.empty() && moments_.back().bed_changes;
+        if (changes && !write_change(root, {time, y, x}, grid, placed)) return false;
+        return write_bed(root, {y, x}, last, placed, changes);
+    }
+
+    bool write_change(GDALGroup& root, const Dimensions& dimensions, const GridGeometry& grid,
+                      const OGRSpatialReference* placed) const {
+        const auto field = make_field(root, dimensions, kBedChange, placed);
+        for (std::size_t t = 0; t < moments_.size(); ++t) {
+            const auto all = placed_on(grid, moments_[t].grid, moments_[t].changed, moments_[t].change.data(),
+                                       std::vector<float>(static_cast<std::size_t>(grid.size()), 0.0F));
+            if (!field || !write_plane(*field, Index(t), grid, all)) return false;
+        }
+        return true;
     }
 
     static bool write_bed(GDALGroup& root, const Dimensions& dimensions, const Frame& last,
-                          const OGRSpatialReference* placed) {
+                          const OGRSpatialReference* placed, bool changes) {
         const Field* elevation = last.node("elevation");
         expect(elevation != nullptr, "a frame has the elevation of its nodes");
         std::vector<float> bed(static_cast<std::size_t>(last.grid.size()), kNothing);
@@ -230,20 +273,28 @@ private:
             if (!std::isnan(elevation->data[k])) bed[k] = as_float(elevation->data[k], "elevation", last.status.time);
         const auto field = make_field(
             root, dimensions,
-            {"elevation", "elevation", 0, "m", "bed as the flow has it: the mean of the elevation model around a node"},
+            {"elevation", "elevation", 0, "m",
+             changes ? "bed as the flow has it at the last time: the mean of the elevation model around a node, and "
+                       "changes so far where the flow follows them"
+                     : "bed as the flow has it: the mean of the elevation model around a node"},
             placed);
         return field && write_plane(*field, 0, last.grid, bed);
     }
 
     /// A moment's values on the grid of the last frame, which holds those of all others.
     static std::vector<float> plane(const Moment& moment, std::size_t variable, const GridGeometry& grid) {
-        std::vector<float> values(static_cast<std::size_t>(grid.size()), kNothing);
-        const NodeAt first = first_node(moment.grid, grid);
-        for (std::size_t k = 0; k < moment.nodes.size(); ++k) {
-            const NodeAt node{moment.nodes[k] % moment.grid.nx + first.i, moment.nodes[k] / moment.grid.nx + first.j};
-            if (!has_node(grid, node)) continue;
-            values[static_cast<std::size_t>(node.j * grid.nx + node.i)] =
-                moment.values[variable * moment.nodes.size() + k];
+        return placed_on(grid, moment.grid, moment.nodes, moment.values.data() + variable * moment.nodes.size(),
+                         std::vector<float>(static_cast<std::size_t>(grid.size()), kNothing));
+    }
+
+    /// Numbers of some nodes of a part, in place of those of the grid.
+    static std::vector<float> placed_on(const GridGeometry& grid, const GridGeometry& part,
+                                        const std::vector<Index>& nodes, const float* numbers,
+                                        std::vector<float> values) {
+        const NodeAt first = first_node(part, grid);
+        for (std::size_t k = 0; k < nodes.size(); ++k) {
+            const NodeAt node{nodes[k] % part.nx + first.i, nodes[k] / part.nx + first.j};
+            if (has_node(grid, node)) values[static_cast<std::size_t>(node.j * grid.nx + node.i)] = numbers[k];
         }
         return values;
     }
@@ -252,6 +303,7 @@ private:
     std::string title_, crs_wkt_;
     std::vector<std::string>& warnings_;
     std::vector<Variable> variables_;
+    bool tells_change_ = false;  ///< of the bed, where the run has one that changes
     GDALDriver* driver_ = nullptr;
     std::vector<Moment> moments_;
 };

@@ -45,6 +45,7 @@ public:
         read_profiles_and_gauges();
         scene_.sections = read_sections(case_, reader_, scene_, problems_);
         read_inflows(case_, reader_, scene_, problems_);
+        remark_on_sections_at_inflows(scene_);
         if (friction_by_table(case_)) remark_on_size(case_, released(), scene_);
         scene_.solid = read_solid_stage(case_, scene_, problems_);
         read_barriers(case_, reader_, meshes_, scene_, problems_);

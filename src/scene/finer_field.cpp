@@ -44,14 +44,13 @@ double between(const Raster& field, Index i, Index j, double u, double v) {
            fu * fv * depth(i + di, j + dj);
 }
 
-/// The depths of the parts of pixel (i, j) that are `u` and `v` pixels from its middle, row after row. Their mean is
-/// the pixel's own depth.
-std::vector<double> parts_of(const Raster& field, Index i, Index j, const std::vector<double>& u,
-                             const std::vector<double>& v) {
+/// The depths of the parts of pixel (i, j) that are `places` pixels from its middle, along both axes, row after row. Their
+/// mean is the pixel's own depth.
+std::vector<double> parts_of(const Raster& field, Index i, Index j, const std::vector<double>& places) {
     std::vector<double> parts;
     double sum = 0.0;
-    for (const double b : v)
-        for (const double a : u) sum += parts.emplace_back(between(field, i, j, a, b));
+    for (const double b : places)
+        for (const double a : places) sum += parts.emplace_back(between(field, i, j, a, b));
     const double own = field.at(i, j);
     const double keep = own * double(parts.size()) / sum;  // the pixel's volume stays the same
     double lowest = own, highest = own;
@@ -65,21 +64,29 @@ std::vector<double> parts_of(const Raster& field, Index i, Index j, const std::v
     return parts;
 }
 
-/// Nodes of a row that lie in a pixel, and where [pixels from its middle]. Those beyond the row count too: a part of a
-/// terrain then has the same depths as all of it.
-struct NodesInPixel {
+/// The parts of a row that the square of a node covers, and the share of the node's width that each of them has.
+struct CoveredParts {
     Index first;
-    std::vector<double> places;
-    NodesInPixel(double middle, double size, double start, double cell) {
-        constexpr double kRoundOff = 1e-9;
-        const auto after = [&](double edge) {
-            return static_cast<Index>(std::ceil((edge - start) / cell - kRoundOff));
-        };
-        first = after(middle - 0.5 * size);
-        for (Index n = first; n < after(middle + 0.5 * size); ++n)
-            places.push_back((start + static_cast<double>(n) * cell - middle) / size);
-    }
+    std::vector<double> shares;
 };
+
+/// Of each node, in a row of nodes and one of `count` parts. Places are those of the first middles [m].
+std::vector<CoveredParts> parts_below(Index nodes, double start, double cell, Index count, double parts_start,
+                                      double part) {
+    constexpr double kRoundOff = 1e-6;   // of coordinates up to 1e9 parts; it makes no slivers
+    const auto edge = [&](Index node) {  // west of it, in parts from the west edge of the first
+        const double at = (start - parts_start + (static_cast<double>(node) - 0.5) * cell) / part + 0.5;
+        return std::abs(at - std::round(at)) < kRoundOff ? std::round(at) : at;
+    };
+    std::vector<CoveredParts> below;
+    for (Index node = 0; node < nodes; ++node) {
+        const double low = std::max(edge(node), 0.0), high = std::min(edge(node + 1), static_cast<double>(count));
+        CoveredParts& of = below.emplace_back(CoveredParts{static_cast<Index>(std::floor(low)), {}});
+        for (auto k = static_cast<double>(of.first); k < high; k += 1.0)
+            of.shares.push_back((std::min(high, k + 1.0) - std::max(low, k)) * part / cell);
+    }
+    return below;
+}
 
 }  // namespace
 
@@ -98,7 +105,7 @@ Raster finer_field(const Raster& field, double cell) {
     for (Index j = 0; j < g.ny; ++j)
         for (Index i = 0; i < g.nx; ++i) {
             if (!(field.at(i, j) > 0.0)) continue;
-            const std::vector<double> depths = parts_of(field, i, j, places, places);
+            const std::vector<double> depths = parts_of(field, i, j, places);
             for (std::size_t k = 0; k < depths.size(); ++k) {
                 const auto n = static_cast<Index>(k);
                 result.at(i * parts + n % parts, j * parts + n / parts) = depths[k];
@@ -108,26 +115,28 @@ Raster finer_field(const Raster& field, double cell) {
 }
 
 Raster on_closer_nodes(const Raster& field, const GridGeometry& grid) {
-    const GridGeometry& g = field.geometry;
+    const Raster fine = finer_field(field, grid.cell);
+    const GridGeometry &g = field.geometry, &parts = fine.geometry;
+    const Index in_pixel = parts.nx / g.nx;
     Raster result = Raster::filled(grid, Raster::nodata);
     result.crs_wkt = field.crs_wkt, result.source = field.source;
-    for (Index j = 0; j < g.ny; ++j) {
-        const NodesInPixel rows(g.y(j), g.cell, grid.y0, grid.cell);
-        for (Index i = 0; i < g.nx; ++i) {
-            const double own = field.at(i, j);
-            if (std::isnan(own)) continue;
-            const NodesInPixel row(g.x(i), g.cell, grid.x0, grid.cell);
-            const std::vector<double> depths =
-                own > 0.0 ? parts_of(field, i, j, row.places, rows.places) : std::vector<double>();
-            const auto wide = static_cast<Index>(row.places.size()), high = static_cast<Index>(rows.places.size());
-            for (Index b = 0; b < high; ++b)
-                for (Index a = 0; a < wide; ++a) {
-                    const Index x = row.first + a, y = rows.first + b;
-                    if (x < 0 || y < 0 || x >= grid.nx || y >= grid.ny) continue;
-                    result.at(x, y) = depths.empty() ? 0.0 : depths[static_cast<std::size_t>(b * wide + a)];
+    const auto rows = parts_below(grid.ny, grid.y0, grid.cell, parts.ny, parts.y0, parts.cell);
+    const auto across = parts_below(grid.nx, grid.x0, grid.cell, parts.nx, parts.x0, parts.cell);
+    for (Index j = 0; j < grid.ny; ++j)
+        for (Index i = 0; i < grid.nx; ++i) {
+            const CoveredParts &row = rows[static_cast<std::size_t>(j)],
+                               &across_node = across[static_cast<std::size_t>(i)];
+            double mean = 0.0;
+            bool known = false;
+            for (std::size_t v = 0; v < row.shares.size(); ++v)
+                for (std::size_t u = 0; u < across_node.shares.size(); ++u) {
+                    const Index x = across_node.first + static_cast<Index>(u), y = row.first + static_cast<Index>(v);
+                    if (std::isnan(field.at(x / in_pixel, y / in_pixel))) continue;
+                    known = true;
+                    if (fine.at(x, y) > 0.0) mean += row.shares[v] * across_node.shares[u] * fine.at(x, y);
                 }
+            if (known) result.at(i, j) = mean;
         }
-    }
     return result;
 }
 

@@ -48,6 +48,8 @@ const std::vector<RemarkRow>& remark_table() {
         {Remark::rain, "rain", -none, 1e-4,
          "found up to {value:.3g} m/s; expected {high:g} m/s at most, which is 360 mm in an hour; check whether it was "
          "given in mm/h"},
+        {Remark::detrainment, "detrainment of a forest", 5.0, 150.0,
+         "found {value:.4g} Pa; expected {low:g} to {high:g} Pa, as in cases/PARAMETERS.md; check its unit"},
         {Remark::few_particles, "few particles", 100.0, none,
          "found {value:.0f} particles in all; expected {low:g} or more, since fewer do not resolve a flow; give a "
          "smaller grid.cell or more particles"},

@@ -21,6 +21,7 @@ enum class Remark {
     release_speed,
     gravity,
     rain,
+    detrainment,
     few_particles,
     depth_without_data,
     zero_margin,

@@ -8,6 +8,7 @@
 #include "law/detrainment_keys.h"
 #include "scene/law_places.h"
 #include "scene/nodes_of_place.h"
+#include "scene/remarks.h"
 
 namespace frana {
 namespace {
@@ -65,6 +66,8 @@ bool any_forest(const CaseFile& file, Scene& scene, Raster& pressure) {
         low = std::min(low, value), high = std::max(high, value);
         area += pressure.geometry.cell * pressure.geometry.cell;
     }
+    for (const double value : low < high ? std::vector<double>{low, high} : std::vector<double>{high})
+        if (value > 0.0) remark_on(scene.log, Remark::detrainment, file.place(kKey), {value});
     if (area > 0.0)
         scene.log.push_back(fmt::format(
             "forest: {:.4g} ha{}, with a detrainment of {} Pa", 1e-4 * area, scene.wider ? " around the releases" : "",

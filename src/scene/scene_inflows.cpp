@@ -12,6 +12,7 @@
 #include "particles/outline_area.h"
 #include "scene/inflow_facts.h"
 #include "scene/inflow_table.h"
+#include "scene/remarks.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
@@ -476,6 +477,10 @@ void read_inflows(const CaseFile& file, const GisReader& reader, Scene& scene, P
         std::optional<Inflow> inflow = InflowReader(file, i, reader, scene).read(problems);
         if (!inflow) continue;
         scene.log.push_back(inflow_sentence(inflow->name, facts_of(*inflow, scene.gravity)));
+        const std::string velocity = fmt::format("inflow.{}.velocity", i);
+        if (file.given(velocity) && !inflow->speed.empty())
+            remark_on(scene.log, Remark::release_speed, file.place(velocity),
+                      {*std::max_element(inflow->speed.begin(), inflow->speed.end())});
         scene.inflows.push_back(std::move(*inflow));
     }
 }

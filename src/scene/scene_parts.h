@@ -79,6 +79,8 @@ void read_survey(const CaseFile& file, const GisReader& reader, Scene& scene, Pr
 double rise_across(const Polyline& line, const Raster& bed);
 /// All [[section]] of a scene that has its terrain; down the slope of the ground counts as positive.
 std::vector<Section> read_sections(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems);
+/// Of a scene that has its inflows: those that lie so near to one that they miss some of it.
+void remark_on_sections_at_inflows(Scene& scene);
 
 /// All [[inflow]] of a scene that has its terrain and its laws. What is wrong with them goes to `problems`, what they
 /// bring to the scene's log.
@@ -120,8 +122,8 @@ std::vector<Insitu> read_insitu(const CaseFile& file, const Scene& scene, Proble
 /// Each pixel's volume and the material's edge stay as they were. No depth leaves the range of the pixel and its
 /// neighbours (after Barth and Jespersen 1989, AIAA 89-0366), so a pixel that is the highest around stays even.
 Raster finer_field(const Raster& field, double cell);
-/// The same on nodes that are closer than the pixels. A node has the depth of the pixel that it lies in, 0 where that
-/// has none. The mean over a pixel's nodes is the pixel's depth.
+/// The same on nodes that are closer than the pixels: the mean over the square of each node, in which pixels without data
+/// count as 0. So the volume stays. A node has no data where no pixel below its square has any.
 Raster on_closer_nodes(const Raster& field, const GridGeometry& grid);
 
 /// Nodes under a release: those inside the outline or next to its edge, where the depth field has material.

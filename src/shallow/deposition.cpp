@@ -62,6 +62,18 @@ std::optional<ExchangeSums> Erosion::settle(Flow& flow, const Status& now) {
     return all;
 }
 
+void Erosion::begin(const Flow& flow, Index first, bool anew) {
+    if (!rest_time_) return;
+    Index last = -1;
+    for (Index p = first; p < flow.particles.count(); ++p) {
+        const auto i = static_cast<Index>(std::lround(flow.particles.x[p])),
+                   j = static_cast<Index>(std::lround(flow.particles.y[p]));
+        const Index tile = flow.grid.tile_of_node(i, j);
+        if (std::exchange(last, tile) == tile) continue;
+        for_each_around(flow.grid, tile, [&](Index to) { clocks_.begin(flow.grid, to, anew); });
+    }
+}
+
 /// THEORY.md, section 20. As the rest of a run (63), of which the first two are. And it goes no tenth of a cell while
 /// it has to rest.
 void Erosion::note_slowest(const Flow& flow, const Status& now) {

@@ -1,4 +1,6 @@
 // What of a depth-averaged run becomes bed.
+#include <algorithm>
+
 #include "shallow/depth_averaged.h"
 
 namespace frana {
@@ -21,12 +23,16 @@ void DepthAveraged::settle() {
     status_.bed = erosion_->status();
 }
 
-/// Ground that no flow was deep on may have been buried by what thin flows left.
+/// Depth above the ground of before is that of the flow and of the deposit below it. So thin flows may bury ground.
 void DepthAveraged::note_buried() {
     if (!erosion_->deposits()) return;
     const auto note = [&](Index k, double depth) {
-        if (peaks_.depth[k] > footprint_depth_ || peaks_.arrival[k] > 0.0) return;
-        if (depth + erosion_->deposited_depth(k) > footprint_depth_) peaks_.arrival[k] = status_.time;
+        const double deposited = erosion_->deposited_depth(k);
+        if (!(deposited > 0.0)) return;
+        const double all = depth + deposited;
+        const bool known = peaks_.depth[k] > footprint_depth_ || peaks_.arrival[k] > 0.0;
+        if (!known && all > footprint_depth_) peaks_.arrival[k] = status_.time;
+        peaks_.depth[k] = std::max(peaks_.depth[k], all);
     };
     for_each_work_tile(flow_.active, [&](Index, Index tile) {
         if (!erosion_->has_changed(tile)) return;

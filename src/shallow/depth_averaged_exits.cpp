@@ -132,6 +132,7 @@ void DepthAveraged::take_rows() {
             if (passages_) passages_->count(from, {c.x[p], c.y[p]}, c.mass[p]);
         }
     });
+    if (erosion_) erosion_->begin(flow_, before, false);
     splitter_.set_next_id(splitter_.next_id() + rows.seeds.count());
     account(carried_in(came));
     status_.kinetic += kinetic;  // of nodes, and to the next grid update only
@@ -172,6 +173,7 @@ double DepthAveraged::place_late(const LateRelease& release, PointSums& came) {
         mass.add(c.mass[p]);
     }
     came.left_mass = mass.value();
+    if (erosion_) erosion_->begin(flow_, before, true);
     return kinetic;
 }
 

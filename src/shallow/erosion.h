@@ -50,6 +50,9 @@ public:
         share_rate_ = std::numeric_limits<double>::infinity();
         if (alone) waited_ = ahead_ = 0.0;
     }
+    /// Points have come, from the one numbered `first` on. That others have moved where they are does not tell of them;
+    /// nor, with `anew`, that others have rested.
+    void begin(const Flow& flow, Index first, bool anew);
     /// Whether this step ends with an exchange. `adapts`: its points are sorted before they are deposited. `last`: after
     /// it the run ends, or something else enters.
     bool is_due(double dt, bool adapts, bool last) const;

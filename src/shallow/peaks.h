@@ -5,7 +5,7 @@ namespace frana {
 
 /// Peaks of every node, updated after each step on nodes near material only.
 struct Peaks {
-    LazyArray<double> depth;     ///< [m]
+    LazyArray<double> depth;     ///< of the flow and of the deposit that lies below it [m]
     LazyArray<double> speed;     ///< along the smoothed bed, where deeper than a tenth of the footprint depth [m/s]
     LazyArray<double> pressure;  ///< on the bed, normal [Pa]
     LazyArray<double> dynamic_pressure;  ///< rho |V|^2, same nodes as speed [Pa]

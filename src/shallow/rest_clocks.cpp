@@ -6,6 +6,13 @@
 #include "mpm/stored_points.h"
 
 namespace frana {
+namespace {
+
+/// In place of a time: of a node whose material has been faster than what counts as rest.
+constexpr double kMoves = -1.0;
+constexpr double kRoundOff = 1.0 + 1e-9;  ///< of a speed that stays
+
+}  // namespace
 
 RestClocks::RestClocks(const TileGrid& grid) : rested_(grid.size()), longest_(grid.tiles()), known_(grid.tiles()) {
     tiles_.reserve(static_cast<std::size_t>(grid.tiles()));  // steps allocate nothing
@@ -26,8 +33,14 @@ void RestClocks::tick_tile(const Flow& flow, Index tile, double dt, double slowe
         const Motion& after = flow.nodes.motions()[k];
         const double speed2 = after.vx * after.vx + after.vy * after.vy;
         const bool still = after.vx == 0.0 && after.vy == 0.0;  // squares of the smallest speeds are 0
-        const bool rests = flow.nodes.column_mass[k] > 0.0 && (still || speed2 < slowest * slowest);
-        rested_[k] = rests ? rested_[k] + dt : 0.0;
+        const bool slow = still || speed2 < slowest * slowest;
+        const Pair& before = flow.nodes.before[k];
+        const bool driven = !still && speed2 > kRoundOff * (before.x * before.x + before.y * before.y);
+        const bool has_begun = !driven || rested_[k] != 0.0;
+        if (!(flow.nodes.column_mass[k] > 0.0) || (slow && !has_begun))
+            rested_[k] = 0.0;
+        else
+            rested_[k] = slow ? std::max(rested_[k], 0.0) + dt : kMoves;
         longest = std::max(longest, rested_[k]);
     });
     longest_[tile] = longest;
@@ -35,6 +48,12 @@ void RestClocks::tick_tile(const Flow& flow, Index tile, double dt, double slowe
 
 void RestClocks::stop(const TileGrid& grid, Index tile, NodeGroups groups) {
     for_each_node_of(grid, tile, groups, [&](Index k, Index, Index) { rested_[k] = 0.0; });
+}
+
+void RestClocks::begin(const TileGrid& grid, Index tile, bool anew) {
+    for_each_node_of(grid, tile, known_[tile], [&](Index k, Index, Index) {
+        if (anew || rested_[k] < 0.0) rested_[k] = 0.0;
+    });
 }
 
 void RestClocks::stop_all(const TileGrid& grid) {
@@ -46,7 +65,7 @@ void RestClocks::take_over(const RestClocks& from, const TileGrid& part, const T
                            Index north) {
     for (const Index tile : from.tiles_)
         for_each_node_of(part, tile, from.known_[tile], [&](Index k, Index i, Index j) {
-            if (!(from.rested_[k] > 0.0)) return;
+            if (from.rested_[k] == 0.0) return;
             const Index a = i + east, b = j + north, to = grid.tile_of_node(a, b);
             if (known_[to] == 0) tiles_.push_back(to);
             known_[to] |= group_of((a + kTile) % kTile, (b + kTile) % kTile);

@@ -54,10 +54,31 @@ Vec2 away_from(const Polygons& outline, const Vec2& point) {
     return inside || !std::isfinite(least.x()) ? Vec2(0, 0) : least;
 }
 
+namespace {
+
+/// Whether a point beside an outline, `far` from it, lies in front of one of its sides. What is nearest to a corner does not. A
+/// side shorter than a cell counts as one cell long, since no pixel may lie in front of it. Where two sides turn by less
+/// than half a right angle they are one round face, without a corner.
+bool is_in_front(const Polygons& outline, const Vec2& point, double far, double cell) {
+    const double round_off = 1e-9 * cell, round_face = std::sqrt(0.5);
+    std::vector<Vec2> along;  // of the nearest sides
+    bool in_front = false;
+    for_each_side(outline, point, [&](const Vec2& a, const Vec2& b, const Vec2& way) {
+        if (a == b || way.norm() > far + round_off) return;
+        const double length = (b - a).norm();
+        along.push_back((b - a) / length);
+        const double from_middle = std::abs((point - a).dot(along.back()) - 0.5 * length);
+        in_front = in_front || from_middle <= 0.5 * std::max(length, cell) + round_off;
+    });
+    return in_front || (along.size() == 2 && along[0].dot(along[1]) > round_face);
+}
+
+}  // namespace
+
 std::vector<Vec2> out_of(const Polygons& outline, const Vec2& point, double cell) {
     const Vec2 away = away_from(outline, point);
-    const double round_off = 1e-9 * cell;
-    if (away.norm() > round_off) return {away};
+    const double round_off = 1e-9 * cell, far = away.norm();
+    if (far > round_off) return is_in_front(outline, point, far, cell) ? std::vector<Vec2>{away} : std::vector<Vec2>{};
     double least = INFINITY;
     for_each_side(outline, point,
                   [&](const Vec2&, const Vec2&, const Vec2& way) { least = std::min(least, way.norm()); });

@@ -89,13 +89,6 @@ Path path_of(const RunFiles& finest, const Raster& bed, double limit, std::vecto
     return path;
 }
 
-double volume_of(const Raster& depth) {
-    double sum = 0.0;
-    for (const double h : depth.values)
-        if (h > 0.0) sum += h;
-    return sum * depth.geometry.cell * depth.geometry.cell;
-}
-
 CellFigures figures_of(const RunFiles& run, const RunFiles& finest, Path& path, double limit) {
     const Raster &peak = run.raster("peak_depth"), &speed = run.raster("peak_speed");
     const Raster deposit = run.deposit();

@@ -25,7 +25,8 @@ namespace {
 constexpr const char *kElevation = "elevation", *kFinalElevation = "final_elevation", *kMetres = "m";
 constexpr const char* kForestKey = "forest.detrainment";
 constexpr const char *kGroundAtEnd = "elevation of the bed at the end of the run", *kLying = "lying_depth",
-                     *kLiesThere = "depth of what lies there at the end, flow and what has become bed, along gravity";
+                     *kLiesThere = "depth of what lies there at the end, flow and what has become bed, along gravity",
+                     *kPeakOfBoth = "largest depth during the run, flow and what has become bed, along gravity";
 
 /// Of a run with erodible.bed_evolves = false, together with a bed_change that is not 0.
 constexpr const char* kGroundStayed =
@@ -159,6 +160,8 @@ void add_lying_depth(std::vector<ProductRaster>& rasters) {
     if (flow == nullptr || bed == nullptr) return;
     ProductRaster lying{kLying, kMetres, kLiesThere, with_deposit(flow->raster, &bed->raster)};
     lying.raster.source = kLying;
+    for (ProductRaster& raster : rasters)
+        if (raster.name == "peak_depth") raster.description = kPeakOfBoth;
     rasters.push_back(std::move(lying));
 }
 

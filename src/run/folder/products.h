@@ -50,7 +50,8 @@ std::vector<ProductRaster> product_rasters(const Frame& last, const std::string&
 /// own bed is filtered, and has barriers in it: no later run could begin on that.
 void add_ground_at_end(std::vector<ProductRaster>& rasters, const Raster& bed, bool follows);
 
-/// Adds lying_depth to rasters of a run whose bed gains: final_depth, and what of the flow has become bed.
+/// Adds lying_depth to rasters of a run whose bed gains: final_depth, and what of the flow has become bed. Peak depths are
+/// described as those of both.
 void add_lying_depth(std::vector<ProductRaster>& rasters);
 
 /// What lies there at the end: lying_depth where the run has it, else final_depth; or nullptr.

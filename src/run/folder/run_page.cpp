@@ -10,6 +10,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "compare/deposit.h"
 #include "observe/table.h"
 #include "run/folder/left_terrain.h"
 #include "run/folder/run_film.h"
@@ -72,6 +73,15 @@ double density_of(const FigureSource& source, const RecordJson& record) {
     return source.density > 0.0 ? source.density : mass / std::max(volume, 1e-300);
 }
 
+/// As the bed had it, by its own density, like eroded_depth.tif and studies. Runs without that raster only tell its mass, which
+/// becomes a volume as it is in the flow [m3].
+double taken_volume(const FigureSource& source, const RecordJson& record, const RecordJson& bed) {
+    const double mass = bed.value("taken_of_bed", 0.0);
+    const ProductRaster* const eroded = find_product(source.rasters, "eroded_depth");
+    if (!(mass > 0.0) || eroded == nullptr) return mass / density_of(source, record);
+    return volume_of(eroded->raster);
+}
+
 /// What there was of the flow, and where it went. What there was none of has no row.
 std::vector<std::pair<std::string, std::string>> volumes_of(const FigureSource& source, const RecordJson& record) {
     const RecordJson& budgets = record.at("budgets");
@@ -82,7 +92,7 @@ std::vector<std::pair<std::string, std::string>> volumes_of(const FigureSource& 
     add("Released", released_in_all(record));
     add("Came in", came_in(record));
     if (const auto bed = budgets.find("bed"); bed != budgets.end()) {
-        add("Taken of the bed", bed->value("taken_of_bed", 0.0) / density_of(source, record));
+        add("Taken of the bed", taken_volume(source, record, *bed));
         add("Became bed", bed->value("lies_behind", 0.0) / density_of(source, record));
     }
     if (const double left = left_share_in(record); left > 0.0)
