@@ -9,7 +9,8 @@ namespace frana {
 /// From the nearest place of an outline to a point [m]; zero inside, and without an outline.
 Vec2 away_from(const Polygons& outline, const Vec2& point);
 
-/// The same outside, in front of a side; none where a corner is nearest. In an outline and on its sides they are the directions that the nearest sides face.
+/// The same outside, in front of a side; none where a corner is nearest. In an outline and on its sides they are the
+/// directions that the nearest sides face.
 std::vector<Vec2> out_of(const Polygons& outline, const Vec2& point, double cell);
 
 /// For each node of the grid, row after row: 1 in the outline or within half a cell of it. A strip thinner than a cell
