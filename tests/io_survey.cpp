@@ -328,6 +328,11 @@ TEST_CASE("Elevations are no surveyed footprint", "[survey]") {
     read(files / "low.tif", wkt_of("EPSG:32632"), log);
     CHECK(any_contains(log, "low.tif: found values above 0, up to 80, in all of its pixels"));
     log.clear();
+    spec.value = [](int column, int) { return column < 30 ? 1.0 : 2.0; };  // classes, of which none is 0
+    make_raster(files / "class.tif", spec);
+    read(files / "class.tif", wkt_of("EPSG:32632"), log);
+    CHECK(any_contains(log, "class.tif: found values above 0, up to 2, in all of its pixels"));
+    log.clear();
     spec.value = [](int column, int) { return column < 30 ? 255.0 : 0.0; };  // a mask of a byte
     make_raster(files / "mask.tif", spec);
     read(files / "mask.tif", wkt_of("EPSG:32632"), log);

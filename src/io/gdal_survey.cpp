@@ -84,8 +84,8 @@ void require_vector_crs(const LayerName& name, const OGRSpatialReference& terrai
     }
 }
 
-/// A mask has one number or two, and a footprint leaves something out. Elevations are many numbers, and large or
-/// everywhere. What has nodata leaves something out.
+/// A mask has one number or two, and a footprint leaves something out, a mask too. Elevations are many numbers, and large
+/// or everywhere. What has nodata leaves something out.
 void refuse_elevations(const std::vector<double>& values, const fs::path& file, std::vector<std::string>& log) {
     constexpr double kLarge = 100.0;  // [m]; no flow is as deep over half of its extent
     constexpr std::size_t kOfMask = 2;
@@ -96,11 +96,11 @@ void refuse_elevations(const std::vector<double>& values, const fs::path& file, 
         ++known, above += value > 0.0, large += value > kLarge;
         if (numbers.size() <= kOfMask) numbers.insert(value);
     }
-    if (numbers.size() <= kOfMask || known < static_cast<Index>(values.size())) return;
+    if (known < static_cast<Index>(values.size())) return;
     const double highest = *std::max_element(values.begin(), values.end(), [](double a, double b) {
         return std::isnan(b) ? false : std::isnan(a) || a < b;
     });
-    if (2 * large > known)
+    if (numbers.size() > kOfMask && 2 * large > known)
         throw UserError(
             fmt::format("{}: found values of up to {:.4g}, on {:.3g} % of the pixels more than {:g}; "
                         "expected a surveyed extent, above 0 where the flow was, not elevations; name the "
@@ -109,7 +109,7 @@ void refuse_elevations(const std::vector<double>& values, const fs::path& file, 
     if (above == known)
         log.push_back(
             fmt::format("{}: found values above 0, up to {:.4g}, in all of its pixels; expected a surveyed "
-                        "extent, above 0 where the flow was, not elevations; check the raster",
+                        "extent, above 0 where the flow was, neither elevations nor classes; check the raster",
                         file.string(), highest));
 }
 
