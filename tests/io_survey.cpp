@@ -260,6 +260,12 @@ TEST_CASE("A surveyed deposit conserves its volume beyond the terrain, on the ru
     spec.unit.clear();
     spec.crs.clear();
     make_raster(files / "nowhere.tif", spec);
+    spec.crs = "EPSG:32632";
+    spec.transform[0] += 2000.0;
+    make_raster(files / "beside.tif", spec);
+    CHECK(contains(
+        user_error([&] { GdalReader().read_deposit(files / "beside.tif", terrain, wkt_of("EPSG:32632"), log); }),
+        "does not touch the terrain's"));
     const std::string message =
         user_error([&] { GdalReader().read_deposit(files / "nowhere.tif", terrain, wkt_of("EPSG:32632"), log); });
     CHECK(contains(message, "has no CRS"));

@@ -224,6 +224,14 @@ void unite(Polygons& polygons, const fs::path& file, std::vector<std::string>& l
     polygons.parts = std::move(parts);
 }
 
+[[noreturn]] void refuse_elsewhere(const fs::path& file, const std::array<double, 4>& covers,
+                                   const std::array<double, 4>& extent) {
+    throw UserError(
+        fmt::format("{}: covers {} on the terrain's map, which does not touch the terrain's {}; expected "
+                    "a survey of this place; check its coordinates and its CRS",
+                    file.string(), gdal::extent_text(covers), gdal::extent_text(extent)));
+}
+
 void require_overlap(const Polygons& polygons, const std::array<double, 4>& extent, const fs::path& file) {
     const std::unique_ptr<OGRMultiPolygon> all = to_ogr(polygons);
     OGRLinearRing edge;
@@ -235,10 +243,7 @@ void require_overlap(const Polygons& polygons, const std::array<double, 4>& exte
     if (all->Intersects(&terrain)) return;
     OGREnvelope box;
     all->getEnvelope(&box);
-    throw UserError(fmt::format(
-        "{}: covers {} on the terrain's map, which does not touch the terrain's {}; expected "
-        "a survey of this place; check its coordinates and its CRS",
-        file.string(), gdal::extent_text({box.MinX, box.MinY, box.MaxX, box.MaxY}), gdal::extent_text(extent)));
+    refuse_elsewhere(file, {box.MinX, box.MinY, box.MaxX, box.MaxY}, extent);
 }
 
 }  // namespace
@@ -285,6 +290,9 @@ Raster GdalReader::read_deposit(const fs::path& file, const GridGeometry& grid, 
                                 file.string(), messages.reason("no transformation known")));
         }
     }
+    const auto has = grid.pixel_extent();
+    if (!(extent[0] < has[2] && extent[2] > has[0] && extent[1] < has[3] && extent[3] > has[1]))
+        refuse_elsewhere(file, extent, has);
     const GridGeometry wide = widened(grid, extent);
     constexpr Index most = 400'000'000;  // nodes, of 8 bytes each
     if (wide.size() > most)
