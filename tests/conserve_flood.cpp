@@ -128,6 +128,19 @@ TEST_CASE("A release is water where there is no structure: all of its volume, wi
     CHECK(has(problem_of(gis, kWalls + released + "at = 5\n"), "what holds together, and water, begin at the start"));
 }
 
+TEST_CASE("A release onto a lake adds to what stands there, with its momentum", "[water][alone]") {
+    FakeGis gis = channel();
+    gis.polygons["release.geojson"] = rectangle(10.0, 0.0, 20.0, 2.5);
+    const std::string released = "[[release]]\noutline = \"release.geojson\"\ndepth = ";
+    for (const double depth : {0.5, 3.0}) {  // less deep than the lake, and deeper
+        const Scene scene =
+            scene_of(gis, kLake + kWalls + released + fmt::format("{}\nvelocity = [2.0, 0.0]\n", depth));
+        const std::unique_ptr<Simulation> run = make_simulation(scene);
+        CHECK(run->status().mass == Approx(1000.0 * (50.0 + 10.0 * depth) * 2.5).epsilon(1e-12));
+        CHECK(run->status().momentum[0] == Approx(2000.0 * 10.0 * depth * 2.5).epsilon(1e-12));
+    }
+}
+
 TEST_CASE("A lake within an outline rests to round-off, and other hollows stay dry", "[water][alone]") {
     // Two hollows of one depth; the outline is around the first.
     const auto z = [](double x, double y) {

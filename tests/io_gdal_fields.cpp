@@ -60,6 +60,16 @@ TEST_CASE("A field is read in its own pixels, cut to those that touch the extent
                    "does not touch [0, 0, 10, 10]"));
 }
 
+TEST_CASE("A field beside the extent has nothing above 0 there, and is refused where it is read", "[gdal]") {
+    const FreshFolder folder;
+    const auto file = folder.path() / "depth.tif";
+    make_raster(file, hump());
+    const GdalReader reader;
+    CHECK(reader.extent_above_zero(file, {500000, 6000000, 500080, 6000060}, wkt_of(32632)).has_value());
+    CHECK_FALSE(reader.extent_above_zero(file, {500080, 6000000, 500180, 6000060}, wkt_of(32632)).has_value());
+    CHECK_FALSE(reader.extent_above_zero(file, {500000, 6000060, 500080, 6000160}, wkt_of(32632)).has_value());
+}
+
 TEST_CASE("A field of pixels that are not square is refused with a gdalwarp that makes them so", "[gdal]") {
     const FreshFolder folder;
     RasterSpec spec = hump();

@@ -1,4 +1,6 @@
 // Outlines and lines from vector files.
+#include <fmt/core.h>
+
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -128,6 +130,30 @@ TEST_CASE("A GeoPackage with two layers is read by the layer that is named; curv
                    "outlines.gpkg|layername=square"));
     CHECK(contains(user_error([&] { of("oval"); }),
                    "no layer \"oval\" with features; expected one of \"square\", \"round\""));
+}
+
+TEST_CASE("Of a source with a filter, as QGIS writes it, only the features of the filter are read", "[gdal]") {
+    GeoJson folder;
+    const auto of_kind = [](int kind, int x) {
+        return fmt::format(
+            R"({{"type":"Feature","properties":{{"kind":{}}},"geometry":{{"type":"Polygon","coordinates":)"
+            "[[[{},0],[{},0],[{},10],[{},0]]]}}}}",
+            kind, x, x + 10, x + 10, x);
+    };
+    const std::string file = folder.write(of_kind(1, 0) + "," + of_kind(2, 20) + "," + of_kind(2, 40)).string();
+    CHECK(area(read(file).polygons) == 150.0);
+    CHECK(area(read(file + "|layername=outline|subset=\"kind\" = 2").polygons) == 100.0);
+    CHECK(area(read(file + "|subset=\"kind\" = 1").polygons) == 50.0);
+    CHECK(area(read(file + "|subset=\"kind\" = 1 OR 'a|b' = 'c'").polygons) == 50.0);
+    CHECK(contains(
+        user_error([&] { read(file + "|subset=\"kind\" = 3"); }),
+        "holds no features of its filter \"\"kind\" = 3\"; expected at least one polygon; correct the filter"));
+    CHECK(contains(user_error([&] { read(file + "|subset=\"kind\" = = 3"); }),
+                   "its filter \"\"kind\" = = 3\" cannot be used ("));
+    CHECK(
+        contains(user_error([&] { read(file + "|layername=outline|geometrytype=Polygon"); }),
+                 "outline.geojson: found \"|geometrytype=Polygon\" after the layer's name; expected |subset=FILTER or "
+                 "nothing; remove it"));
 }
 
 TEST_CASE("Longitude and latitude are brought to the terrain's UTM zone within a millimetre", "[gdal]") {

@@ -260,6 +260,12 @@ TEST_CASE("A surveyed deposit conserves its volume beyond the terrain, on the ru
     spec.unit.clear();
     spec.crs.clear();
     make_raster(files / "nowhere.tif", spec);
+    spec.crs = "EPSG:32632";
+    spec.transform[0] += 2000.0;
+    make_raster(files / "beside.tif", spec);
+    CHECK(contains(
+        user_error([&] { GdalReader().read_deposit(files / "beside.tif", terrain, wkt_of("EPSG:32632"), log); }),
+        "does not touch the terrain's"));
     const std::string message =
         user_error([&] { GdalReader().read_deposit(files / "nowhere.tif", terrain, wkt_of("EPSG:32632"), log); });
     CHECK(contains(message, "has no CRS"));
@@ -327,6 +333,11 @@ TEST_CASE("Elevations are no surveyed footprint", "[survey]") {
     std::vector<std::string> log;
     read(files / "low.tif", wkt_of("EPSG:32632"), log);
     CHECK(any_contains(log, "low.tif: found values above 0, up to 80, in all of its pixels"));
+    log.clear();
+    spec.value = [](int column, int) { return column < 30 ? 1.0 : 2.0; };  // classes, of which none is 0
+    make_raster(files / "class.tif", spec);
+    read(files / "class.tif", wkt_of("EPSG:32632"), log);
+    CHECK(any_contains(log, "class.tif: found values above 0, up to 2, in all of its pixels"));
     log.clear();
     spec.value = [](int column, int) { return column < 30 ? 255.0 : 0.0; };  // a mask of a byte
     make_raster(files / "mask.tif", spec);

@@ -132,6 +132,28 @@ TEST_CASE("A raster of depths below 0 is a remark where it was resampled, and re
           0.0);
 }
 
+TEST_CASE("Particles that a raster of velocities does not tell are a remark", "[scene][remarks]") {
+    FakeGis gis = slope_gis();
+    gis.rasters["whole.tif"] = sampled(grid, [](double, double) { return 3.0; });
+    gis.rasters["half.tif"] = sampled(grid, [](double x, double) { return x > 1060 ? 3.0 : Raster::nodata; });
+    const auto said = [&](const std::string& east, const std::string& north) {
+        std::string all;
+        for (const std::string& line : built(with_release("outline = \"release.geojson\"\ndepth = 2.0\nvelocity = [\"" +
+                                                          east + "\", \"" + north + "\"]"),
+                                             gis)
+                                           .scene.log)
+            all += line + "\n";
+        return all;
+    };
+    CHECK(said("whole.tif", "whole.tif").find("velocity") == std::string::npos);
+    for (const auto& [east, north] : {std::pair{"half.tif", "whole.tif"}, {"whole.tif", "half.tif"}}) {
+        const std::string text = said(east, north);
+        CAPTURE(text);
+        CHECK(text.find("particles, taken as a velocity of 0; expected one for each; fill the gaps of ") !=
+              std::string::npos);
+    }
+}
+
 TEST_CASE("A lake fills the whole window up to its surface", "[scene]") {
     FakeGis gis;
     gis.rasters["dem.tif"] = sampled({20, 20, 0.5, 0.5, 1.0}, [](double x, double) { return x < 10 ? 8.0 : 12.0; });

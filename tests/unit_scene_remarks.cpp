@@ -135,6 +135,13 @@ TEST_CASE("A release without an outline is said to be all of the terrain", "[sce
     gis.rasters["depth.tif"] = sampled({20, 20, 1005, 2005, 10}, [](double, double) { return 2.0; });
     CHECK(remarks(head + "depth = \"depth.tif\"\n" + rest, gis, "no outline").empty());
     CHECK(remarks(head + "surface = 150\n" + rest, slope(0.5), "no outline").empty());
+    // A raster of classes has no 0 around.
+    for (const double least : {0.0, 1.0}) {
+        gis.rasters["mask.tif"] =
+            sampled({20, 20, 1005, 2005, 10}, [=](double x, double) { return x < 1100 ? 2.0 : least; });
+        CHECK(remarks(head + "mask = \"mask.tif\"\ndepth = 0.01\n" + rest, gis, "found a mask above 0 everywhere")
+                  .size() == (least > 0.0 ? 1 : 0));
+    }
     CHECK(remarks(case_of(coulomb + "bed.mu = 0.4"), slope(0.5), "no outline").empty());
 }
 

@@ -279,6 +279,17 @@ void set_edges(const Scene& scene, WaterScene& w) {
 
 }  // namespace
 
+namespace {
+
+/// With the momentum of what came; `still`: depth that rests there, below 0 on dry ground [m].
+WaterState on_top_of(double still, const WaterState& came) {
+    if (!(still > 0.0)) return came;
+    const double depth = still + came.depth, share = came.depth / depth;
+    return {depth, share * came.u, share * came.v};
+}
+
+}  // namespace
+
 TwoPhaseScene two_phase_scene(const Scene& scene) {
     const WaterPhase& of = *scene.water;
     TwoPhaseScene s;
@@ -300,9 +311,12 @@ TwoPhaseScene two_phase_scene(const Scene& scene) {
     const auto bound =
         std::make_shared<std::vector<double>>(of.level ? depths_of(s.structured) : std::vector<double>{});
     const auto released = std::make_shared<ReleasedWater>(scene);
-    w.start = [bound, released, node, bed = w.bed, level = of.level, lake = of.lake](double x, double y) {
+    // A depth that is released stands on the lake. Pores, and a release up to a level, fill within it.
+    const bool adds = s.alone && !scene.still_surface;
+    w.start = [bound, released, node, adds, bed = w.bed, level = of.level, lake = of.lake](double x, double y) {
         const std::size_t k = node(x, y);
         WaterState state = released->at(k);
+        if (adds && level && (lake.empty() || lake[k])) return on_top_of(*level - bed(x, y), state);
         if (level && (lake.empty() || lake[k]) && *level > bed(x, y) + (*bound)[k] + state.depth)
             state = {*level - bed(x, y) - (*bound)[k], 0.0, 0.0};
         return state;

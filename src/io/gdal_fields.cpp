@@ -234,6 +234,7 @@ std::optional<std::array<double, 4>> GdalReader::extent_above_zero(const std::fi
     if (needs_warp(raster, crs_wkt)) return {};
     const auto [i0, nx] = gdal::touched(raster.x_axis(), extent[0], extent[2]);
     const auto [j0, ny] = gdal::touched(raster.y_axis(), extent[1], extent[3]);
+    if (nx == 0 || ny == 0) return {};
     NodeBox box;
     for (Index row = 0; row < ny; row += kRows) {
         const Index rows = std::min(kRows, ny - row);

@@ -84,8 +84,8 @@ void require_vector_crs(const LayerName& name, const OGRSpatialReference& terrai
     }
 }
 
-/// A mask has one number or two, and a footprint leaves something out. Elevations are many numbers, and large or
-/// everywhere. What has nodata leaves something out.
+/// A mask has one number or two, and a footprint leaves something out, a mask too. Elevations are many numbers, and large
+/// or everywhere. What has nodata leaves something out.
 void refuse_elevations(const std::vector<double>& values, const fs::path& file, std::vector<std::string>& log) {
     constexpr double kLarge = 100.0;  // [m]; no flow is as deep over half of its extent
     constexpr std::size_t kOfMask = 2;
@@ -96,11 +96,11 @@ void refuse_elevations(const std::vector<double>& values, const fs::path& file, 
         ++known, above += value > 0.0, large += value > kLarge;
         if (numbers.size() <= kOfMask) numbers.insert(value);
     }
-    if (numbers.size() <= kOfMask || known < static_cast<Index>(values.size())) return;
+    if (known < static_cast<Index>(values.size())) return;
     const double highest = *std::max_element(values.begin(), values.end(), [](double a, double b) {
         return std::isnan(b) ? false : std::isnan(a) || a < b;
     });
-    if (2 * large > known)
+    if (numbers.size() > kOfMask && 2 * large > known)
         throw UserError(
             fmt::format("{}: found values of up to {:.4g}, on {:.3g} % of the pixels more than {:g}; "
                         "expected a surveyed extent, above 0 where the flow was, not elevations; name the "
@@ -109,7 +109,7 @@ void refuse_elevations(const std::vector<double>& values, const fs::path& file, 
     if (above == known)
         log.push_back(
             fmt::format("{}: found values above 0, up to {:.4g}, in all of its pixels; expected a surveyed "
-                        "extent, above 0 where the flow was, not elevations; check the raster",
+                        "extent, above 0 where the flow was, neither elevations nor classes; check the raster",
                         file.string(), highest));
 }
 
@@ -224,6 +224,14 @@ void unite(Polygons& polygons, const fs::path& file, std::vector<std::string>& l
     polygons.parts = std::move(parts);
 }
 
+[[noreturn]] void refuse_elsewhere(const fs::path& file, const std::array<double, 4>& covers,
+                                   const std::array<double, 4>& extent) {
+    throw UserError(
+        fmt::format("{}: covers {} on the terrain's map, which does not touch the terrain's {}; expected "
+                    "a survey of this place; check its coordinates and its CRS",
+                    file.string(), gdal::extent_text(covers), gdal::extent_text(extent)));
+}
+
 void require_overlap(const Polygons& polygons, const std::array<double, 4>& extent, const fs::path& file) {
     const std::unique_ptr<OGRMultiPolygon> all = to_ogr(polygons);
     OGRLinearRing edge;
@@ -235,10 +243,7 @@ void require_overlap(const Polygons& polygons, const std::array<double, 4>& exte
     if (all->Intersects(&terrain)) return;
     OGREnvelope box;
     all->getEnvelope(&box);
-    throw UserError(fmt::format(
-        "{}: covers {} on the terrain's map, which does not touch the terrain's {}; expected "
-        "a survey of this place; check its coordinates and its CRS",
-        file.string(), gdal::extent_text({box.MinX, box.MinY, box.MaxX, box.MaxY}), gdal::extent_text(extent)));
+    refuse_elsewhere(file, {box.MinX, box.MinY, box.MaxX, box.MaxY}, extent);
 }
 
 }  // namespace
@@ -285,6 +290,9 @@ Raster GdalReader::read_deposit(const fs::path& file, const GridGeometry& grid, 
                                 file.string(), messages.reason("no transformation known")));
         }
     }
+    const auto has = grid.pixel_extent();
+    if (!(extent[0] < has[2] && extent[2] > has[0] && extent[1] < has[3] && extent[3] > has[1]))
+        refuse_elsewhere(file, extent, has);
     const GridGeometry wide = widened(grid, extent);
     constexpr Index most = 400'000'000;  // nodes, of 8 bytes each
     if (wide.size() > most)

@@ -26,7 +26,8 @@ using gdal::vertices;
 /// A layer's geometries in the terrain's coordinates, and how they got there.
 struct Source {
     std::filesystem::path file;
-    std::string layer;  ///< the requested one; empty: the only one
+    std::string layer;   ///< the requested one; empty: the only one
+    std::string filter;  ///< of its features; empty: all
     gdal::Dataset dataset;
     std::optional<OGRSpatialReference> terrain;  ///< nothing: unknown
     std::vector<std::string>& log;
@@ -76,7 +77,10 @@ gdal::Transformation to_terrain(Source& source, OGRLayer& layer) {
 
 Source open_source(const std::filesystem::path& file, const std::string& crs_wkt, std::vector<std::string>& log) {
     const LayerName name = split_layer(file.string());
-    Source source{name.file, name.layer, gdal::open(name.file, GDAL_OF_VECTOR), std::nullopt, log};
+    if (!name.rest.empty())
+        throw UserError(fmt::format("{}: found \"{}\" after the layer's name; expected {}FILTER or nothing; remove it",
+                                    name.file, name.rest, kFilterMark));
+    Source source{name.file, name.layer, name.filter, gdal::open(name.file, GDAL_OF_VECTOR), std::nullopt, log};
     if (!crs_wkt.empty()) source.terrain = gdal::crs_from_wkt(crs_wkt);
     return source;
 }
@@ -118,6 +122,17 @@ OGRLayer* chosen_layer(const Source& source) {
     return layers.empty() ? nullptr : layers.front();
 }
 
+/// The features of a filter only, such as QGIS has of a layer.
+void set_filter(const Source& source, OGRLayer& layer) {
+    if (source.filter.empty()) return;
+    const gdal::Messages messages;
+    if (layer.SetAttributeFilter(source.filter.c_str()) == OGRERR_NONE) return;
+    throw UserError(
+        fmt::format("{}: its filter \"{}\" cannot be used ({}); expected a condition on its attributes, such as "
+                    "\"kind\" = 1; correct it, or remove {}",
+                    source.file.string(), source.filter, messages.reason("no reason given"), kFilterMark));
+}
+
 /// Features that draw nothing: they may stand for an outline that was lost on the way.
 void refuse_null(const Source& source, const std::vector<GIntBig>& without) {
     if (without.empty()) return;
@@ -137,6 +152,7 @@ void for_each_geometry(Source& source, Census& census,
                        const std::function<void(const OGRFeature&, const OGRGeometry&, const std::string&)>& use) {
     OGRLayer* layer = chosen_layer(source);
     if (!layer) return;
+    set_filter(source, *layer);
     gdal::Messages messages;
     const gdal::Transformation transformation = to_terrain(source, *layer);
     std::vector<GIntBig> without;
@@ -211,9 +227,10 @@ void collect_lines(const OGRGeometry& geometry, Census& census, const std::strin
 }
 
 [[noreturn]] void refuse_content(const Source& source, const Census& census, const char* wanted, const char* way_out) {
-    throw UserError(fmt::format("{}: {}; expected at least one {}; {}", source.file.string(),
-                                census.features == 0 ? "holds no features" : "holds " + census.text() + " only", wanted,
-                                way_out));
+    const std::string of_filter = source.filter.empty() ? "" : fmt::format(" of its filter \"{}\"", source.filter);
+    throw UserError(fmt::format("{}: {}{}; expected at least one {}; {}", source.file.string(),
+                                census.features == 0 ? "holds no features" : "holds " + census.text() + " only",
+                                of_filter, wanted, of_filter.empty() ? way_out : "correct the filter"));
 }
 
 /// The number that a feature has under `attribute`.

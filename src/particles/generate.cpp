@@ -91,23 +91,41 @@ void remark_bare_outline(const Material& material, const ReleaseReport& report, 
                                   100.0 * (1.0 - report.area / area), release.depth_field->source));
 }
 
-/// Value of a raster's pixel at a map point, or `otherwise`.
-double pixel_or(const std::optional<Raster>& raster, double x, double y, double otherwise) {
-    if (!raster) return otherwise;
-    const Index pixel = pixel_of(raster->geometry, x, y);
-    if (pixel < 0) return otherwise;
-    const double value = raster->values[static_cast<std::size_t>(pixel)];
-    return std::isfinite(value) ? value : otherwise;
+/// Value of a raster's pixel at a map point; nothing without one.
+std::optional<double> pixel_under(const Raster& raster, double x, double y) {
+    const Index pixel = pixel_of(raster.geometry, x, y);
+    if (pixel < 0) return {};
+    const double value = raster.values[static_cast<std::size_t>(pixel)];
+    if (!std::isfinite(value)) return {};
+    return value;
 }
 
-void set_velocity(const Release& release, std::size_t begin, Seeds& seeds) {
+/// Particles from `begin` on get the pixels they are in. Those without one keep what they have: a remark.
+void take_pixels(const std::optional<Raster>& raster, const Material& material, const char* way, const Seeds& seeds,
+                 std::size_t begin, std::vector<double>& speeds, Log& log) {
+    if (!raster) return;
+    Index without = 0;
+    for (std::size_t p = begin; p < seeds.x.size(); ++p) {
+        const std::optional<double> speed = pixel_under(*raster, seeds.x[p], seeds.y[p]);
+        if (speed)
+            speeds[p] = *speed;
+        else
+            ++without;
+    }
+    if (without > 0)
+        log.push_back(
+            fmt::format("{}: found no data of the velocity to the {} for {} of {} particles, taken as a velocity "
+                        "of 0; expected one for each; fill the gaps of {}",
+                        material.name(), way, without, seeds.x.size() - begin,
+                        raster->source.empty() ? "its raster" : raster->source));
+}
+
+void set_velocity(const Material& material, std::size_t begin, Seeds& seeds, Log& log) {
+    const Release& release = material.release();
     seeds.vx.resize(seeds.x.size(), release.velocity.x());
     seeds.vy.resize(seeds.x.size(), release.velocity.y());
-    if (!release.velocity_x && !release.velocity_y) return;
-    for (std::size_t p = begin; p < seeds.x.size(); ++p) {
-        seeds.vx[p] = pixel_or(release.velocity_x, seeds.x[p], seeds.y[p], release.velocity.x());
-        seeds.vy[p] = pixel_or(release.velocity_y, seeds.x[p], seeds.y[p], release.velocity.y());
-    }
+    take_pixels(release.velocity_x, material, "east", seeds, begin, seeds.vx, log);
+    take_pixels(release.velocity_y, material, "north", seeds, begin, seeds.vy, log);
 }
 
 /// `total` shared out in proportion to the areas, largest remainders first, at least one each.
@@ -189,7 +207,7 @@ Seeds make_seeds(const std::vector<Release>& releases, const Raster& bed, const 
         const OutlineFaults faults = on_lattice
                                          ? place_on_lattice(materials[r], lattice, bed, seeds)
                                          : place_scattered(materials[r], counts[r], report.area, density, bed, seeds);
-        set_velocity(releases[r], begin, seeds);
+        set_velocity(materials[r], begin, seeds, log);
         CompensatedSum volume;
         for (std::size_t p = begin; p < seeds.x.size(); ++p) volume.add(seeds.volume[p]);
         report.particle_volume = volume.value();

@@ -38,10 +38,11 @@ void add_water(Table& table) {
     table.push_back(
         used(number("water.share", "1", {0.0, 1.0, false, true}, 0.0,
                     "share of each release's volume that is free water in its pores; the particles have the rest")));
-    table.push_back(absent(used(number("water.level", "m", any_number,
-                                       "elevation of a lake at rest at the start, wherever the ground lies lower; it "
-                                       "goes on beyond open sides that it meets")),
-                           "no lake"));
+    table.push_back(absent(
+        used(number("water.level", "m", any_number,
+                    "elevation of a lake at rest at the start, wherever the ground lies lower; it "
+                    "goes on beyond open sides that it meets. With water alone a depth that is released adds to it")),
+        "no lake"));
     table.push_back(absent(used(make("water.level_within", Kind::path, "",
                                      "polygons that lake lies within, any OGR vector file; beyond sides it does not "
                                      "go on then")),

@@ -159,7 +159,7 @@ private:
 
     Polygons outline() {
         std::string name = case_.path(key("outline")).string();
-        if (given("layer")) name += kLayerMark + case_.word(key("layer"));
+        if (given("layer")) name = with_layer(name, case_.word(key("layer")));
         const std::string attribute = depth_attribute();
         ValuedPolygons valued;
         if (attribute.empty())

@@ -176,13 +176,24 @@ void judge_end(const CaseFile& file, const std::string& key, const char* end, do
 /// A depth without an outline is that of all of the terrain, which is seldom meant.
 void remark_on_whole_terrain(const CaseFile& file, const ReleaseSummary& release, Scene& scene) {
     const std::string prefix = fmt::format("release.{}.", release.table);
-    for (const char* bound : {"outline", "mask", "surface"})
+    for (const char* bound : {"outline", "surface"})
         if (file.given(prefix + bound)) return;
+    const std::string place = file.table_place(fmt::format("release.{}", release.table));
+    if (file.given(prefix + "mask")) {
+        const GridGeometry& g = scene.bed.geometry;
+        constexpr double kRoundOff = 1e-9;
+        if (release.report.area > (1.0 - kRoundOff) * (g.x_max() - g.x0) * (g.y_max() - g.y0))
+            scene.log.push_back(
+                fmt::format("{}: found a mask above 0 everywhere, so that all of the terrain is released: {:.6g} m3 on "
+                            "{:.6g} m2; expected 0 around the release; correct the mask, unless this is meant",
+                            place, release.report.volume, release.report.area));
+        return;
+    }
     if (file.is_text(prefix + "depth")) return;
-    scene.log.push_back(fmt::format(
-        "{}: found no outline, so that all of the terrain is released: {:.6g} m3 on {:.6g} m2; expected an "
-        "outline; give one, unless this is meant",
-        file.table_place(fmt::format("release.{}", release.table)), release.report.volume, release.report.area));
+    scene.log.push_back(
+        fmt::format("{}: found no outline, so that all of the terrain is released: {:.6g} m3 on {:.6g} m2; expected an "
+                    "outline; give one, unless this is meant",
+                    place, release.report.volume, release.report.area));
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ bool take_release(const CaseFile& file, Index i, const GisReader& reader, const 
     if (file.given(table + "outline")) {
         std::vector<std::string> said_later;
         std::string name = file.path(table + "outline").string();
-        if (file.given(table + "layer")) name.append(kLayerMark).append(file.word(table + "layer"));
+        if (file.given(table + "layer")) name = with_layer(name, file.word(table + "layer"));
         take_corners(reader.read_polygons(name, whole.crs_wkt, said_later), points);
         return true;
     }

@@ -27,12 +27,12 @@ constexpr const char* kWayOut = "or run with --overwrite instead of --resume to 
 /// Whether two cases that differ in this key alone have the same states.
 bool changes_nothing(const std::string& key) { return key == "output.checkpoint_minutes"; }
 
-/// What a file holds is compared by its sum; where it lies says nothing, but its layer does.
+/// What a file holds is compared by its sum; where it lies says nothing, but its layer and its filter do.
 std::string without_paths(const std::string& key, const std::string& value) {
     const Parameter* parameter = find_parameter(key);
     const bool may_be_path = parameter && names_files(parameter->kind);
     if (!may_be_path || value.find('"') == std::string::npos) return value;
-    const std::size_t layer = value.find(kLayerMark);
+    const std::size_t layer = std::min(value.find(kLayerMark), value.find(kFilterMark));
     return layer == std::string::npos ? "a file" : "a file" + value.substr(layer);
 }
 

@@ -53,7 +53,7 @@ std::vector<ReleaseSource> release_sources(const CaseFile& file) {
         source.table = i;
         source.late = file.number(prefix + "at") > 0.0 || file.flag(prefix + "when_hit");
         if (file.given(prefix + "outline")) source.outline = file.path(prefix + "outline").string();
-        if (file.given(prefix + "layer")) source.outline.append(kLayerMark).append(file.word(prefix + "layer"));
+        if (file.given(prefix + "layer")) source.outline = with_layer(source.outline, file.word(prefix + "layer"));
         const bool by_depth = file.given(prefix + "depth") && file.is_text(prefix + "depth");
         if (file.given(prefix + "mask"))
             source.mask = file.path(prefix + "mask").string();
