@@ -3,6 +3,7 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
+#include "channel_with_wall.h"
 #include "coupling/staged_run.h"
 #include "observe/memory_archive.h"
 #include "run/run_loop.h"
@@ -168,37 +169,12 @@ TEST_CASE("A run has the same bits whatever the time between its frames, which a
     }
 }
 
-namespace {
-
-/// 3D water that runs against a wall in a closed channel and over it, and becomes particles at the end.
-Scene channel() {
-    Scene scene = scene_on(31, 9, 0.5, [](double, double) { return 2.0; });
-    scene.sides = Sides::wall;
-    fill(scene, [](double x, double) { return x > 4 && x < 8 ? 1.0 : 0.0; });
-    scene.particles.vx.assign(scene.particles.x.size(), 5.0);
-    Barrier wall;
-    wall.name = "wall";
-    wall.outline.parts.push_back({{{{10.0, -1.0}, {12.0, -1.0}, {12.0, 5.0}, {10.0, 5.0}}}});
-    wall.height = 0.6;
-    scene.barriers = {wall};
-    SolidStage stage;
-    stage.window = {0, 0, 30, 8};
-    stage.closed = {true, true, true, true};
-    stage.cell = 0.25;
-    stage.spacing = 0.125;
-    stage.law = solid::Fluid{};
-    stage.until = 1.1;
-    scene.solid = stage;
-    return scene;
-}
-
-}  // namespace
-
 TEST_CASE("3D points alone have the same bits whatever the time between frames, and so have loads of barriers",
           "[conserve][stages][barrier]") {
     constexpr double kEnd = 1.3;
-    Scene scene = channel();
-    if (GENERATE(true, false)) scene.solid->until.reset();
+    Scene scene = channel(0.6);
+    scene.end = 10.0;
+    if (GENERATE(true, false)) scene.solid->until = 1.1;
     const Outcome seldom = run_with<StagedRun>(scene, 1000.0, kEnd);
     for (const double every : {0.004, 0.03, 0.5}) {  // as long as a step, a few, many
         const Outcome often = run_with<StagedRun>(scene, every, kEnd);

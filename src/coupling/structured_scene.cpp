@@ -277,10 +277,6 @@ void set_edges(const Scene& scene, WaterScene& w) {
     w.sources = water_sources(scene);
 }
 
-}  // namespace
-
-namespace {
-
 /// With the momentum of what came; `still`: depth that rests there, below 0 on dry ground [m].
 WaterState on_top_of(double still, const WaterState& came) {
     if (!(still > 0.0)) return came;

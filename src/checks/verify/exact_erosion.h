@@ -33,8 +33,8 @@ struct ErodingSlab {
     double time_to(double growth, double way) const;
 };
 
-/// Whose friction sets its bed in motion. The numbers are those of a slab of 30 degrees and mu 0.3 whose bed yields to 4 %
-/// of the friction.
+/// The slab of jumped() in `slab_jump`. Its drive is that of 30 degrees and mu 0.3, its friction 4 % of the one there. D-Claw's
+/// law for dry material has such a share.
 ErodingSlab jumping_slab(double kappa);
 
 /// Depth that a rigid block takes at x behind its first front, after the way S, by E = growth h u. The block has

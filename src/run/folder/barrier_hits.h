@@ -28,8 +28,8 @@ struct BarrierHit {
     std::array<double, 4> side_depth{unknown, unknown, unknown, unknown};     ///< [m]
 };
 
-/// A side has pixels whose middle lies in front of one of its faces: in that direction (within 45 degrees) from the nearest place
-/// of the outline. Before a face at 45 degrees they belong to both sides. What passes a corner belongs to none: it would be
+/// A side has pixels whose middle lies in front of one of its faces: in that direction (within 45 degrees) from the nearest
+/// place of the outline. Before a face at 45 degrees they belong to both sides. What passes a corner belongs to none: it would be
 /// at the lee side else. Those whose middle is on a face or behind it belong to that face: 3D points reach up to it. The
 /// cost is that of the box around the outline.
 /// `bed`, on the rasters' nodes, tells the surface; nullptr: that is not known.

@@ -73,8 +73,8 @@ double density_of(const FigureSource& source, const RecordJson& record) {
     return source.density > 0.0 ? source.density : mass / std::max(volume, 1e-300);
 }
 
-/// As the bed had it, by its own density, like eroded_depth.tif and studies. Runs without that raster only tell its mass, which
-/// becomes a volume as it is in the flow [m3].
+/// As the bed had it, by its own density, like eroded_depth.tif and studies. Runs without that raster tell its mass alone,
+/// which becomes a volume as it is in the flow [m3].
 double taken_volume(const FigureSource& source, const RecordJson& record, const RecordJson& bed) {
     const double mass = bed.value("taken_of_bed", 0.0);
     const ProductRaster* const eroded = find_product(source.rasters, "eroded_depth");
