@@ -83,6 +83,7 @@ Erosion::Erosion(const Scene& scene, const ErodibleBed& bed, Flow& flow)
       initial_(flow.grid.size()),
       demand_(flow.grid.size()),
       taken_(flow.grid.size()),
+      gained_(flow.grid.size()),
       share_(flow.grid.size()),
       holds_(flow.grid.tiles()),
       changed_(flow.grid.tiles()),

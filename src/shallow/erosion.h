@@ -150,6 +150,7 @@ private:
     bool choose(const Flow& flow);
     void make_room(const Flow& flow);
     void find_demand(Flow& flow, const Stretch& stretch);
+    void find_gained(const Flow& flow);
     bool find_shares(Flow& flow);
     void share_out(Flow& flow);
     void lower(Flow& flow);
@@ -182,6 +183,7 @@ private:
 
     LazyArray<double> left_, initial_;  ///< [kg]
     LazyArray<double> demand_, taken_;  ///< of the step, on the nodes; zero between steps [kg]
+    LazyArray<Pair> gained_;            ///< of velocity, in the step's grid update [m/s]
     LazyArray<double> share_;           ///< of the demand that a node can give, then what is left over to give [1]
     LazyArray<double> pending_;         ///< change of z that the smoothed bed does not have yet [m]
     LazyArray<double> tile_pending_;    ///< largest of a tile [m]

@@ -12,6 +12,7 @@
 #include "shallow/erosion.h"
 #include "shallow/ground_of_four.h"
 #include "shallow/sub_points_of_four.h"
+#include "shallow/tiles_around.h"
 
 namespace frana {
 namespace {
@@ -120,6 +121,7 @@ template <class Law, class RatesAt, class Slowed>
 
 /// THEORY (72): the demand of each point, and their sum on the nodes.
 void Erosion::find_demand(Flow& flow, const Stretch& stretch) {
+    if (stretch.velocity_dt > 0.0) find_gained(flow);
     flow.particles.with_real([&](auto real) {
         using Real = decltype(real);
         for_each_eroding_in_turn(flow, [&](Index n) {
@@ -170,38 +172,37 @@ Double4 strengths(const DragOfFour& drag, const BedStateOf<Double4>& bed, Double
     return (1.0 + kRounding) * s.density * s.thickness * bed.kappa * covers * held;
 }
 
-/// What the four nodes around a point have gained of velocity in the last grid update, by the weights a, b of the lower
-/// nodes and c, d of the upper ones: two sums, of x and of y. Nodes without mass count as not accelerated, so that nothing
-/// is read that the step has not written.
-[[gnu::always_inline]] inline Double4 gained_velocity(const Flow& flow, Index k, double a, double b, double c,
-                                                      double d) {
-    const Index up = k + flow.grid.stride();
-    const std::uint8_t* const f = flow.nodes.flags.data();
-    if (!(f[k] & f[k + 1] & f[up] & f[up + 1] & kMoving)) {
-        const auto weight = [&](Index node, double w) { return f[node] & kMoving ? w : 0.0; };
-        a = weight(k, a), b = weight(k + 1, b), c = weight(up, c), d = weight(up + 1, d);
-    }
-    const Motion* const now = flow.nodes.motions();
-    const Double4 then =
-        Double4{a, a, b, b} * load(&flow.nodes.before[k]) + Double4{c, c, d, d} * load(&flow.nodes.before[up]);
-    const Double4 after = (a * load(now + k) + b * load(now + k + 1)) + (c * load(now + up) + d * load(now + up + 1));
-    return Double4{after[0] - (then[0] + then[2]), after[1] - (then[1] + then[3]), 0.0, 0.0};
+/// What a node and its right neighbour have gained of velocity in the last grid update. Nodes without mass count as not
+/// accelerated: the step has not written theirs.
+[[gnu::always_inline]] inline Double4 gained_by_two(const Nodes& nodes, Index k) {
+    const Double4 first = load(nodes.motions() + k), second = load(nodes.motions() + k + 1);
+    const Double4 gained = Double4{first[0], first[1], second[0], second[1]} - load(&nodes.before[k]);
+    const auto moving = [&](Index node) -> std::int64_t { return nodes.flags[node] & kMoving ? -1 : 0; };
+    const std::int64_t a = moving(k), b = moving(k + 1);
+    return select(Mask4{a, a, b, b}, gained, Double4{});
 }
 
-/// The nodes' acceleration, no more than changes the speed by three quarters. Points that have come farther than a cell have
-/// none: the nodes around them may not be those that moved them. `speed2`: the square of theirs on the map.
+/// The nodes' acceleration by what they have gained, no more than changes the speed by three quarters. Points that have come
+/// farther than a cell have none: the nodes around them may not be those that moved them. `speed2`: the square of theirs on
+/// the map.
 template <class Stretch>
-void accelerate(Flight& f, const Flow& flow, const Stretch& stretch, Double4 x, Double4 y, Double4 speed2, int lanes) {
+[[gnu::always_inline]] inline void accelerate(Flight& f, const Flow& flow, const Pair* gained, const Stretch& stretch,
+                                              Double4 x, Double4 y, Double4 speed2) {
     const double per_second = 1.0 / stretch.velocity_dt;
     const Int4 i = floor_positive(x + kTile), j = floor_positive(y + kTile);
     const Double4 none = {}, one = all(1.0), to_right = x + kTile - to_double(i), to_top = y + kTile - to_double(j);
-    const Double4 a = (one - to_right) * (one - to_top), b = to_right * (one - to_top), c = (one - to_right) * to_top,
-                  d = to_right * to_top;
-    for (int lane = 0; lane < lanes; ++lane) {
-        const Double4 gained =
-            gained_velocity(flow, j[lane] * flow.grid.stride() + i[lane], a[lane], b[lane], c[lane], d[lane]);
-        f.ax[lane] = per_second * gained[0], f.ay[lane] = per_second * gained[1];
+    const Double4 b = to_right * (one - to_top), d = to_right * to_top;
+    Double4 weights[4], sums[4];
+    transpose((one - to_top) - b, b, to_top - d, d, weights);
+    for (int lane = 0; lane < 4; ++lane) {
+        const Pair* const node = gained + j[lane] * flow.grid.stride() + i[lane];
+        const Double4 w = weights[lane];
+        sums[lane] = Double4{w[0], w[0], w[1], w[1]} * load(node) +
+                     Double4{w[2], w[2], w[3], w[3]} * load(node + flow.grid.stride());
     }
+    Double4 columns[4];
+    transpose(sums[0], sums[1], sums[2], sums[3], columns);
+    f.ax = per_second * (columns[0] + columns[2]), f.ay = per_second * (columns[1] + columns[3]);
     constexpr double kMostChange = 0.75;
     const double reach = std::max(std::abs(stretch.middle), std::abs(stretch.whole - stretch.middle));
     const Mask4 near = speed2 * (stretch.step * stretch.step) <= flow.cell * flow.cell;
@@ -242,6 +243,15 @@ template <class Stretch>
     return select(chosen, max(abs(x - x0), abs(y - y0)), none);
 }
 
+/// What the grid update gave to the velocities of all nodes around points that may take something.
+void Erosion::find_gained(const Flow& flow) {
+    for_each_in_parallel(nodes_, [&](Index tile) {
+        for_each_four_of(flow.grid, tile, kAllGroups, [&](Index k, Index, Index) {
+            store(&gained_[k], gained_by_two(flow.nodes, k)), store(&gained_[k + 2], gained_by_two(flow.nodes, k + 2));
+        });
+    });
+}
+
 /// THEORY.md, section 18: growth along the flight since the last exchange, and the flight that begins where it ends.
 template <class Law, class Drag, class Real, bool kFresh>
 void Erosion::demand_of_tile(Flow& flow, Index n, const Stretch& stretch, const Law& law, Drag& drag) {
@@ -270,7 +280,8 @@ void Erosion::demand_of_tile(Flow& flow, Index n, const Stretch& stretch, const 
         see_layer<Law, kFresh>(means, ground.below.cosine, state);
         if constexpr (Law::kSeesLeft) state.edge = sqrt(select(moves, mass / (flow.density * deep), one));
         Flight flight{ux, uy, none, none, stretch.middle};
-        if (stretch.velocity_dt > 0.0) accelerate(flight, flow, stretch, x, y, select(moves, speed2, one), lanes);
+        if (stretch.velocity_dt > 0.0)
+            accelerate(flight, flow, gained_.data(), stretch, x, y, select(moves, speed2, one));
         const Double4 along = ground.below.kappa;
         const auto rates = [&](Double4 speed, Double4 gain) {
             state.speed = along * speed;
