@@ -251,8 +251,8 @@ ChartFigure barrier_chart(const FigureSource& source, const std::string& name, c
     const Column& t = table.column("t");
     figure.x_range = from_zero(t);
     ChartPanel mean{"force [N]", {}, false, {}, 1.4}, parts{"force of a step [N]", {}, false, {}, 1.0},
-        up{"run-up [m]", {}, false, {}, 0.7}, over{"over it [m3]", {}, false, {}, 0.7};
-    up.curves = {curve("highest so far", t, table.column("run_up"))};
+        up{"elevation [m]", {}, false, {}, 0.7}, over{"over it [m3]", {}, false, {}, 0.7};
+    up.curves = {curve("run-up, highest so far", t, table.column("run_up"))};
     over.curves = {curve("volume that was over it", t, table.column("overtopped"))};
     if (has_finite(table, "run_up")) figure.panels.push_back(up);
     if (has_values(table, "overtopped")) figure.panels.push_back(over);
