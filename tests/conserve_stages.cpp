@@ -325,11 +325,18 @@ TEST_CASE("Sand by the bed law is as strong inside as the flow needs, whatever a
     };
     FlowParticles still;
     add(still, 2.0, 0.0);
-    CHECK(choose_start(scene, still).friction == Approx(slope));  // that of the fastest flow on this slope
+    const double cosine = 1.0 / std::hypot(1.0, slope), fall = 49.0 + 2.0 - 48.0;  // to the window's eastern edge
+    CHECK(choose_start(scene, still).friction ==
+          Approx(mu + 2.0 * scene.gravity * fall / (500.0 * 2.0 * cosine * cosine)).epsilon(1e-3));
+    scene.bed_law = bed::Voellmy{mu, 200.0};  // on a way that is long enough, what the slope gives
+    CHECK(choose_start(scene, still).friction == Approx(slope));
+    scene.bed_law = bed::Voellmy{mu, 1e9};  // in the end Coulomb's
+    CHECK(choose_start(scene, still).friction == Approx(mu));
+    scene.bed_law = bed::Voellmy{mu, 500.0};
     FlowParticles fast;
     add(fast, 2.0, 20.0);
     // Voellmy: mu + v^2 / (xi h cos), v along the bed and h across it.
-    const double cosine = 1.0 / std::hypot(1.0, slope), along = 20.0 / cosine;
+    const double along = 20.0 / cosine;
     const double of_bulk = mu + along * along / (500.0 * 2.0 * cosine * cosine);
     REQUIRE(of_bulk > 0.4);
     CHECK(choose_start(scene, fast).friction ==

@@ -112,18 +112,25 @@ double squared_speed(const FlowParticles& particles, std::size_t k) {
     return particles.vx[k] * particles.vx[k] + particles.vy[k] * particles.vy[k] + climb * climb;
 }
 
-/// What brakes the particles at the bed, or will once they flow as fast as their slope lets them. Then friction is the
-/// slope. It is a mean by mass. A film at the margin, which drag brakes most, says nothing of what the flow needs
-/// inside.
-double mean_friction(const Scene& scene, const FlowParticles& particles) {
+/// The square of the speed that a particle has once it has fallen to the lowest ground, `low`.
+double squared_speed_below(const Scene& scene, const FlowParticles& particles, std::size_t k, double low) {
+    return squared_speed(particles, k) +
+           2.0 * scene.gravity * std::max(0.0, particles.bed[k] + particles.depth[k] - low);
+}
+
+/// What brakes the particles at the bed, or will as they speed up: until friction is the slope, or until they are down. It
+/// is a mean by mass. A film at the margin, which drag brakes most, says nothing of what the flow needs inside.
+double mean_friction(const Scene& scene, const FlowParticles& particles, double low) {
     constexpr double kSteepest = 1.0;  // no sand stands steeper than 45 degrees
     double sum = 0.0, mass = 0.0;
     for (std::size_t k = 0; k < particles.count(); ++k) {
         const double slope = std::hypot(particles.slope_x[k], particles.slope_y[k]);
-        const FlowMap::Mean flow{particles.depth[k], std::sqrt(squared_speed(particles, k)),
-                                 1.0 / std::hypot(1.0, slope)};
-        const double now = friction_of_flow(scene, {particles.x[k], particles.y[k]}, flow);
-        sum += particles.mass[k] * std::min(std::max(now, slope), kSteepest);
+        const Vec2 place{particles.x[k], particles.y[k]};
+        FlowMap::Mean flow{particles.depth[k], std::sqrt(squared_speed(particles, k)), 1.0 / std::hypot(1.0, slope)};
+        const double now = friction_of_flow(scene, place, flow);
+        flow.speed = std::sqrt(squared_speed_below(scene, particles, k, low));
+        const double later = std::min(slope, friction_of_flow(scene, place, flow));
+        sum += particles.mass[k] * std::min(std::max(now, later), kSteepest);
         mass += particles.mass[k];
     }
     return mass > 0.0 ? sum / mass : 0.0;
@@ -144,8 +151,8 @@ double largest_at_rest(const Scene& scene) {
 }
 
 /// Of sand that has the bed's friction.
-double friction_inside(const Scene& scene, const FlowParticles& particles) {
-    const double at_bed = scene.solid->whole_bed_law ? mean_friction(scene, particles) : scene.solid->bed_friction;
+double friction_inside(const Scene& scene, const FlowParticles& particles, double low) {
+    const double at_bed = scene.solid->whole_bed_law ? mean_friction(scene, particles, low) : scene.solid->bed_friction;
     return std::max(largest_at_rest(scene), at_bed);
 }
 
@@ -166,7 +173,7 @@ void add_means(const Scene& scene, const FlowParticles& particles, double low, S
     double mass = 0.0;
     for (std::size_t k = 0; k < particles.count(); ++k) {
         const double v2 = squared_speed(particles, k), depth = particles.depth[k];
-        const double fall = std::sqrt(v2 + 2.0 * scene.gravity * std::max(0.0, particles.bed[k] + depth - low));
+        const double fall = std::sqrt(squared_speed_below(scene, particles, k, low));
         const double own = own_speed(scene.solid->law, scene.density, scene.gravity, depth, fall);
         mass += particles.mass[k];
         start.depth += particles.mass[k] * depth;
@@ -200,7 +207,7 @@ SolidStart choose_start(const Scene& scene, const FlowParticles& particles) {
     }
     const auto [low, high] = ground_of(scene);
     SolidStart start;
-    start.friction = friction_inside(scene, particles);
+    start.friction = friction_inside(scene, particles, low);
     start.sound_speed = scene.solid->sound_speed.value_or(10.0 * std::max(fastest, 0.1));
     constexpr double kRoom = 8.0;    // cells above the ground at least
     constexpr double kSplash = 4.0;  // jets that a wall throws up rise to several times the energy of their flow
