@@ -20,13 +20,13 @@ FakeGis walled_gis() {
     return gis;
 }
 
-CaseFile case_of(const std::string& rest) {
-    const std::string text =
-        "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\n"
-        "end = 20\n[material.bed]\nlaw = \"voellmy\"\nmu = 0.2\nxi = 500\n" +
-        rest;
-    return CaseFile::parse(text, "slide/case.toml");
+std::string text_of(const std::string& rest) {
+    return "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\n"
+           "end = 20\n[material.bed]\nlaw = \"voellmy\"\nmu = 0.2\nxi = 500\n" +
+           rest;
 }
+
+CaseFile case_of(const std::string& rest) { return CaseFile::parse(text_of(rest), "slide/case.toml"); }
 
 Scene scene_of(const std::string& rest) { return build_scene(case_of(rest), walled_gis()); }
 
@@ -83,6 +83,12 @@ TEST_CASE("A 3D stage has the scene's laws where it gives none of its own", "[st
     CHECK_FALSE(stage.stuck);
     CHECK(std::holds_alternative<solid::Fluid>(scene_of(two + west + "law = \"fluid\"\n").solid->law));
     CHECK(std::get<solid::Fluid>(scene_of(two + west + "viscosity = 7\n").solid->law).viscosity == 7.0);
+    CHECK_FALSE(stage.fluid_by_drag);
+    std::string drag_alone = text_of(two + west);
+    drag_alone.replace(drag_alone.find("mu = 0.2"), 8, "mu = 0.0");
+    const Scene drag = build_scene(CaseFile::parse(drag_alone, "slide/case.toml"), walled_gis());
+    CHECK(std::holds_alternative<solid::Fluid>(drag.solid->law));
+    CHECK(drag.solid->fluid_by_drag);
     CHECK_FALSE(stage.sound_speed.has_value());
     const Scene bingham = scene_of(
         "[material.rheology]\nlaw = \"bingham\"\nviscosity = 20\nyield_stress = 300\n[[stage]]\nmodel = "

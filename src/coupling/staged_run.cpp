@@ -386,9 +386,13 @@ void StagedRun::remark_law(std::vector<std::string>& remarks) const {
         remarks.push_back(fmt::format(
             "3D points are sand with an internal friction of {:.3g} degrees, {}{}; stage.law names another law",
             std::atan(start_.friction) / constants::kDegree,
-            stage.whole_bed_law ? "the mean friction at the bed when the stage begins, and no less than the slope"
+            stage.whole_bed_law ? "the mean of what friction at the bed may be on the way down, the slope at most"
                                 : "as along the bed",
             scene_.bed_laws() ? ", or the largest friction at rest in the stage's window" : ""));
+    if (stage.fluid_by_drag)
+        remarks.push_back(
+            "3D points are a fluid without friction inside, since the bed law has no friction at rest; stage.law names "
+            "another law");
     if (stage.whole_bed_law || start_.stuck) return;
     if (scene_.bed_laws())
         remarks.push_back(fmt::format(

@@ -33,10 +33,10 @@ void add_terrain(Table& table) {
                                  "steep: exact on any slope; shallow: gentle slopes (Fois et al. 2024); linearised: "
                                  "Savage and Hutter's theory, for comparison with its solutions"),
                           text("shallow")));
-    Parameter curvature = choice(
-        "terrain.curvature", {"full", "inertia", "none"}, "full",
-        "bed curvature: full; inertia: in the acceleration, not in the friction; none. What holds together keeps its "
-        "length on the map, and only its grains feel a bend");
+    Parameter curvature =
+        choice("terrain.curvature", {"full", "inertia", "none"}, "full",
+               "bed curvature: full; inertia: in the acceleration, not in the friction; none. With material.structure "
+               "only fragmented material (grains) feels a bend");
     curvature.otherwise.push_back({"terrain.model", text("shallow"), text("none")});
     curvature.otherwise.push_back({"terrain.unrolled", true, text("none")});
     table.push_back(curvature);

@@ -36,10 +36,10 @@ void add_erodible(Table& table) {
         if (key.usual) row.fallback = *key.usual;
         table.push_back(with(row, law, key.used_by, key.needed_by));
     }
-    table.push_back(
-        used(number("erodible.momentum", "1", fraction, 0.0,
-                    "share of the flow's velocity that what is taken up brings along: 0, the law of friction is "
-                    "what the bed resists with; 1, what the flow's base feels; no more than friction pays for")));
+    table.push_back(used(
+        number("erodible.momentum", "1", fraction, 0.0,
+               "share of the flow's velocity that what is taken up has at once: with 0 the friction law is the bed's "
+               "resistance, with 1 it is the stress at the flow's base; never more than friction takes meanwhile")));
     table.push_back(
         used(number("erodible.min_depth", "m", not_negative, 0.05, "of the flow, below which nothing is taken")));
     table.push_back(

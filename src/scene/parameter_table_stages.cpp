@@ -115,8 +115,10 @@ void add_stages(Table& table) {
         of_3d(number("stage.cell", "m", positive, "node distance of the 3D grid"), "half of the grid's cell"));
     table.push_back(of_3d(number("stage.spacing", "m", positive, "distance of the 3D points at the start"),
                           "half of the stage's cell: eight points a cell"));
-    table.push_back(of_3d(number("stage.top", "m", any_number, "elevation above which points leave the space"),
-                          "four times as high above the lowest ground as the energy of the material reaches"));
+    table.push_back(of_3d(
+        number("stage.top", "m", any_number, "elevation above which points leave the space"),
+        "four times as high above the lowest ground as the energy of the material reaches, and at least eight cells of "
+        "the stage above the highest ground"));
     add_laws(table);
     table.push_back(of_3d(
         make("stage.stuck", Kind::flag, "", "the lowest material does not slide on the bed"),

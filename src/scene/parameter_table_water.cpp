@@ -13,8 +13,8 @@ void add_water_sides(Table& table) {
         Parameter parameter = make(
             "", Kind::number_or_choice, "m",
             "that side of the terrain for free water: wall; free: as if the channel went on, so still water on level "
-            "ground stays; or the elevation of a lake beyond, whose energy has what flows in; below the ground "
-            "water falls out");
+            "ground stays; or the elevation of a lake beyond: what flows in has its energy; where that is below the "
+            "ground, water falls out");
         parameter.key = std::string("water.sides.") + side;
         parameter.range = any_number;
         parameter.choices = {"wall", "free"};

@@ -155,6 +155,7 @@ struct SolidStage {
     double spacing = 0.5;                ///< of the points at the start [m]
     SolidLaw law;                        ///< of fluids without the bulk modulus, which the speed of sound gives
     bool of_bed = false;                 ///< the law is sand with the bed's friction; its stiffness follows from sound
+    bool fluid_by_drag = false;          ///< the law is a fluid, since the bed law has no friction at rest
     std::optional<double> sound_speed;   ///< of fluids and such sand [m/s]; nothing: chosen when the stage begins
     std::optional<double> top;           ///< elevation where the space ends [m]; nothing: chosen when the stage begins
     bool split = false;                  ///< points that are drawn apart become two

@@ -240,6 +240,9 @@ private:
                           [](const std::string& key) { return key == "sound_speed"; });
             return solid::DruckerPrager::of({}, std::atan(friction_at_rest(scene_.bed_law)), 0.0);
         }
+        stage.fluid_by_drag = law == "fluid" && hangs_on_speed(scene_.bed_law) && !given("law") &&
+                              !given("viscosity") && !mud_of_bed() &&
+                              std::holds_alternative<rheology::None>(scene_.rheology);
         refuse_others(law, [&](const std::string& key) { return solid::has_key(law, key); });
         const solid::Values value = [&](const std::string& name) { return value_of(name); };
         if (solid::has_key(law, "yield_stress") && !(value("yield_stress").value_or(0.0) > 0.0))

@@ -200,9 +200,9 @@ template <class Stretch>
         sums[lane] = Double4{w[0], w[0], w[1], w[1]} * load(node) +
                      Double4{w[2], w[2], w[3], w[3]} * load(node + flow.grid.stride());
     }
-    Double4 columns[4];
-    transpose(sums[0], sums[1], sums[2], sums[3], columns);
-    f.ax = per_second * (columns[0] + columns[2]), f.ay = per_second * (columns[1] + columns[3]);
+    Double4 parts[4];
+    transpose(sums[0], sums[1], sums[2], sums[3], parts);
+    f.ax = per_second * (parts[0] + parts[2]), f.ay = per_second * (parts[1] + parts[3]);
     constexpr double kMostChange = 0.75;
     const double reach = std::max(std::abs(stretch.middle), std::abs(stretch.whole - stretch.middle));
     const Mask4 near = speed2 * (stretch.step * stretch.step) <= flow.cell * flow.cell;

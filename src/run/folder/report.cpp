@@ -359,7 +359,7 @@ std::string barriers(const RunRecord& r) {
     if (r.barriers.empty()) return "";
     if (r.extras.breakage) return barriers_of_structure(r);
     std::string text =
-        "## Barriers\n\n| Barrier | First contact | Deepest flow at it | Dynamic pressure | Impulse x, y, z | Run-up "
+        "## Barriers\n\n| Barrier | First contact | Deepest at it | Dynamic pressure | Impulse x, y, z | Run-up "
         "to "
         "elevation | Over it |\n|---|---|---|---|---|---|---|\n";
     double blur = 0.0, hardest = 0.0;

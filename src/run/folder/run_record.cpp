@@ -302,7 +302,8 @@ Json means_json(const std::vector<MeanForce>& means) {
     return list;
 }
 
-Json barriers_json(const std::vector<BarrierSummary>& barriers) {
+/// `moments`: moments about a point of each barrier are known.
+Json barriers_json(const std::vector<BarrierSummary>& barriers, bool moments) {
     Json list = Json::array();
     for (const BarrierSummary& b : barriers) {
         const bool measured = b.blur > 0.0;  // forces; particles alone tell none
@@ -315,7 +316,7 @@ Json barriers_json(const std::vector<BarrierSummary>& barriers) {
                         {"raw_peak_force", if_measured(b.raw_peak_force)},
                         {"mean_forces", means_json(measured ? b.means : std::vector<MeanForce>())},
                         {"impulse", measured ? Json{b.impulse[0], b.impulse[1], b.impulse[2]} : Json(nullptr)},
-                        {"moments_about", {b.about[0], b.about[1], b.about[2]}},
+                        {"moments_about", moments ? Json{b.about[0], b.about[1], b.about[2]} : Json(nullptr)},
                         {"run_up", std::isfinite(b.run_up) ? Json(b.run_up) : Json(nullptr)},
                         {"overtopped_volume", b.overtopped}});
     }
@@ -438,7 +439,7 @@ std::string run_json(const RunRecord& record) {
                  {"p2g_error_max", {{"mass", s.extremes.p2g_mass_error}, {"momentum", s.extremes.p2g_momentum_error}}},
                  {"figures", figures},
                  {"insitu", insitu_json(record.insitu)},
-                 {"barriers", barriers_json(record.barriers)},
+                 {"barriers", barriers_json(record.barriers, !record.extras.breakage)},
                  {"checkpoints",
                   {{"written", record.checkpoints.written},
                    {"failed", record.checkpoints.failed},
