@@ -17,8 +17,9 @@
 namespace frana {
 namespace {
 
-/// What a point demands at once, of its mass. No bed gives so much, and round-off of more would count.
-constexpr double kMostGain = 1e3;
+/// What a point demands at once, of its mass. Few beds give so much. Where one gives less, what is left over is a difference
+/// of demands, and round-off of more would count.
+constexpr double kMostGain = 1e2;
 /// Growth in half of a stretch above which no acceleration is followed: it is no small correction any more.
 constexpr double kMostFollowed = 0.05;
 
