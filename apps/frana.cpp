@@ -295,7 +295,7 @@ void add_verify(CLI::App& app, VerifyOptions& options, Action& action) {
     command->add_option("NAME", options.names, "problems; default all");
     CLI::Option* list = command->add_flag("--list", options.list, "list the problems");
     command->add_option("--cells", options.cells, "grids: N,N,...")->delimiter(',')->check(CLI::Range(4, 100000));
-    command->add_flag("--coarse", options.coarse, "leave out grids that take half a minute or more");
+    command->add_flag("--coarse", options.coarse, "leave out the finest grid of problems that take long");
     command
         ->add_option("--preset", options.preset,
                      "default, fast, paper, or float: the default with scheme.precision = \"float\"")

@@ -47,7 +47,7 @@ struct Pushed final : Probe {
 }  // namespace
 
 TEST_CASE("A barrier takes the momentum of what it stops, and nothing passes it", "[barrier]") {
-    const Scene scene = channel(4.0);
+    const Scene scene = coarse_channel(4.0);
     StagedRun run(scene);
     const double mass = run.status().mass;
     run_to(run, 1.0);
@@ -338,7 +338,7 @@ std::shared_ptr<const DistanceField> box_shape() {
 }
 
 TEST_CASE("A barrier of any shape is ground to particles and a wall to points", "[barrier]") {
-    Scene scene = channel(4.0);
+    Scene scene = coarse_channel(4.0);
     StagedRun prism(scene);
     scene.barriers[0] = {};
     scene.barriers[0].name = "mesh";
@@ -388,13 +388,12 @@ std::shared_ptr<const DistanceField> dam_shape() {
 TEST_CASE("What runs up the face of a dam and back has not gone over it", "[barrier]") {
     const bool space = GENERATE(false, true);
     const auto over = [&](double speed, double* run_up) {
-        Scene scene = channel(4.0);
+        Scene scene = coarse_channel(4.0);  // an eighth of the points show it as well
         scene.barriers[0] = {};
         scene.barriers[0].name = "dam";
         scene.barriers[0].shape = dam_shape();
         scene.particles.vx.assign(scene.particles.x.size(), speed);
         scene.bed_law = bed::None{};
-        scene.solid->cell = 0.5, scene.solid->spacing = 0.25;  // an eighth of the points show it as well
         if (!space) scene.solid.reset();
         const std::unique_ptr<Simulation> run = make_simulation(scene);
         run_to(*run, 2.0);
@@ -412,7 +411,7 @@ TEST_CASE("What runs up the face of a dam and back has not gone over it", "[barr
 }
 
 TEST_CASE("Run-up is what stands at a barrier, not between the legs of a bent one", "[barrier]") {
-    Scene scene = channel(4.0);
+    Scene scene = coarse_channel(4.0);
     scene.barriers[0].outline = {};
     // One leg along x = 12 across the channel, the other far beside it: the box around both holds all the water.
     scene.barriers[0].line = {{3.0, 30.5}, {12.0, 30.5}, {12.0, 0.5}};

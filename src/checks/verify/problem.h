@@ -80,8 +80,8 @@ struct Problem {
     std::string order_of = "l1_depth";  ///< quantity whose order is observed
     bool needs_level = false;           ///< the paper preset is given the still level
     bool takes_minutes = false;         ///< runs when it is named only
-    bool finest_is_long = false;  ///< twenty seconds or more: `frana verify --coarse` leaves the last grid out, and
-                                  ///< the problem where it has no other
+    bool finest_is_long = false;  ///< twenty seconds or more, or five that prove what other grids do: `frana verify
+                                  ///< --coarse` leaves the last grid out, and the problem where it has no other
     bool in_3d = false;           ///< of the 3D model: has no presets
     bool has_presets = true;      ///< false: of a model on the plane that has none
 };

@@ -335,6 +335,7 @@ std::vector<Problem> column_problems() {
                   {},
                   run_column_steps};
     steps.order_of = "runout_change";
+    steps.finest_is_long = true;
     steps.gates = {{0, "runout_change", 0.04, "half a cell of eight; damped by the step it was -8 %"}, closed};
     Problem bars{"column_bars",
                  "a plane column of aluminium bars collapses: surface measured by Bui et al. (2008)",

@@ -116,7 +116,6 @@ std::vector<Problem> structured_case_problems() {
                   {24, 30, 36},
                   {},
                   run_clay_flume};
-    flume.finest_is_long = true;
     flume.order_of = "soft_coverage";
     flume.gates = {{0, "soft_off", 0.15, "calibrated: 0.40 to 0.70 of the length"},
                    {24, "stiff_coverage", 0.25, "calibrated"},
@@ -146,7 +145,7 @@ std::vector<Problem> structured_case_problems() {
                     closed,
                     mass};
     std::vector<Problem> all = {flume, convex, valley};
-    for (Problem& problem : all) problem.has_presets = false;
+    for (Problem& problem : all) problem.has_presets = false, problem.finest_is_long = true;
     return all;
 }
 
