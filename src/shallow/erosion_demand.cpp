@@ -197,9 +197,8 @@ template <class Stretch>
     transpose((one - to_top) - b, b, to_top - d, d, weights);
     for (int lane = 0; lane < 4; ++lane) {
         const Pair* const node = gained + j[lane] * flow.grid.stride() + i[lane];
-        const Double4 w = weights[lane];
-        sums[lane] = Double4{w[0], w[0], w[1], w[1]} * load(node) +
-                     Double4{w[2], w[2], w[3], w[3]} * load(node + flow.grid.stride());
+        const Double4 w = weights[lane], lower = {w[0], w[0], w[1], w[1]}, upper = {w[2], w[2], w[3], w[3]};
+        sums[lane] = lower * load(node) + upper * load(node + flow.grid.stride());
     }
     Double4 parts[4];
     transpose(sums[0], sums[1], sums[2], sums[3], parts);
