@@ -430,11 +430,11 @@ TEST_CASE("Still water is not at rest as long as the ground takes some of it", "
     CHECK(run->status().mass == 0.0);
     CHECK(run->may_rest());
     // Where no water is, the ground may take some.
-    FakeGis beside = ground(8, 8, 5.0, flat);
-    beside.polygons["west.geojson"] = rectangle(-1.0, -1.0, 20.0, 41.0);
-    beside.rasters["east.tif"] = sampled({8, 8, 2.5, 2.5, 5.0}, [](double x, double) { return x > 30.0 ? 0.1 : 0.0; });
+    FakeGis dry = ground(8, 8, 5.0, flat);
+    dry.polygons["west.geojson"] = rectangle(-1.0, -1.0, 20.0, 41.0);
+    dry.rasters["east.tif"] = sampled({8, 8, 2.5, 2.5, 5.0}, [](double x, double) { return x > 30.0 ? 0.1 : 0.0; });
     const std::string west = "infiltration = \"east.tif\"\nlevel = 1\nlevel_within = \"west.geojson\"\n";
-    CHECK(make_simulation(scene_of(beside, west + kWalls))->may_rest());
+    CHECK(make_simulation(scene_of(dry, west + kWalls))->may_rest());
 }
 
 TEST_CASE("Sides of water are read one by one; others are what boundary.sides says", "[water][alone][scene]") {
