@@ -118,7 +118,8 @@ TEST_CASE("A release is water where there is no structure: all of its volume, wi
     const std::unique_ptr<Simulation> run = make_simulation(scene);
     double volume = 0.0;
     for (const double part : scene.particles.volume) volume += part;
-    CHECK(volume == Approx(49.75 * 2.0).epsilon(1e-12));  // particles are between the outer nodes, cells go on
+    CHECK(volume == Approx(50.0 * 2.5).epsilon(1e-12));  // in whole cells, beyond the outer nodes too
+    CHECK_FALSE(has(said_of(gis, kWalls + released), "left out"));
     CHECK(run->status().mass == Approx(1000.0 * 50.0 * 2.5).epsilon(1e-12));
     CHECK(run->status().momentum[0] == Approx(500.0 * 50.0 * 2.5).epsilon(1e-12));
     const Frame frame = run->frame();
@@ -378,6 +379,20 @@ TEST_CASE("A case of water alone has the same bits on any threads, and when take
     CHECK(std::hypot(left.momentum_residual[0], left.momentum_residual[1]) < 1e-12 * scale);
 }
 
+// Half pixels along the edge were as deep as those inside of the outer nodes, wherever an outline began in them.
+TEST_CASE("A release of water whose outline begins within the outer pixels has the outline's volume",
+          "[water][alone]") {
+    FakeGis gis = channel();
+    gis.polygons["release.geojson"] = rectangle(0.125, 0.0, 50.0, 2.5);
+    const std::string released = "[[release]]\noutline = \"release.geojson\"\ndepth = 1.0\n[particles]\n";
+    for (const char* placed :
+         {"per_cell = 4\n", "per_cell = 1\n", "per_cell = 7\n", "placement = \"r2\"\n", "placement = \"slope\"\n"}) {
+        CAPTURE(placed);
+        const std::unique_ptr<Simulation> run = make_simulation(scene_of(gis, kWalls + released + placed));
+        CHECK(run->status().mass == Approx(1000.0 * 49.875 * 2.5).epsilon(1e-12));
+    }
+}
+
 TEST_CASE("A run of water alone waits for what is to come, and ends when nothing is left or moves",
           "[water][alone][inflow]") {
     const FreshFolder folder;
@@ -398,6 +413,28 @@ TEST_CASE("A run of water alone waits for what is to come, and ends when nothing
     const Scene rainy = scene_of(plane(), "rain = 1e-4\n");
     CHECK((!make_simulation(rainy)->may_rest() && make_simulation(rainy)->more_comes()));
     CHECK(has(make_simulation(rainy)->why_not_add({}), "found a case of free water"));
+}
+
+// It ended after a step: still water was at rest, whatever went into the ground.
+TEST_CASE("Still water is not at rest as long as the ground takes some of it", "[water][alone]") {
+    const double depth = 1.0, rate = 0.1;
+    const std::string pond = kWalls + "[[release]]\nsurface = 1\n", soaks = "infiltration = 0.1\n";
+    CHECK(make_simulation(scene_of(ground(8, 8, 5.0, flat), pond))->may_rest());
+    const Scene scene = scene_of(ground(8, 8, 5.0, flat), soaks + pond);
+    const std::unique_ptr<Simulation> run = make_simulation(scene);
+    CHECK_FALSE(run->may_rest());
+    go_to(*run, 0.5 * depth / rate);
+    CHECK_FALSE(run->may_rest());
+    CHECK(run->status().mass == Approx(0.5 * 1000.0 * 1600.0 * depth).epsilon(1e-12));
+    go_to(*run, 1.01 * depth / rate);
+    CHECK(run->status().mass == 0.0);
+    CHECK(run->may_rest());
+    // Where no water is, the ground may take some.
+    FakeGis dry = ground(8, 8, 5.0, flat);
+    dry.polygons["west.geojson"] = rectangle(-1.0, -1.0, 20.0, 41.0);
+    dry.rasters["east.tif"] = sampled({8, 8, 2.5, 2.5, 5.0}, [](double x, double) { return x > 30.0 ? 0.1 : 0.0; });
+    const std::string west = "infiltration = \"east.tif\"\nlevel = 1\nlevel_within = \"west.geojson\"\n";
+    CHECK(make_simulation(scene_of(dry, west + kWalls))->may_rest());
 }
 
 TEST_CASE("Sides of water are read one by one; others are what boundary.sides says", "[water][alone][scene]") {

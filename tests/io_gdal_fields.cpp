@@ -60,6 +60,13 @@ TEST_CASE("A field is read in its own pixels, cut to those that touch the extent
                    "does not touch [0, 0, 10, 10]"));
 }
 
+TEST_CASE("The unit that a raster declares for its numbers is told", "[gdal]") {
+    const FreshFolder folder;
+    const Raster speeds = Raster::filled({3, 2, 0.0, 0.0, 5.0}, 36.0);
+    write_geotiff(folder.path() / "v.tif", speeds, "km/h", "speeds");
+    CHECK(GdalReader().unit_of(folder.path() / "v.tif") == "km/h");
+}
+
 TEST_CASE("A field beside the extent has nothing above 0 there, and is refused where it is read", "[gdal]") {
     const FreshFolder folder;
     const auto file = folder.path() / "depth.tif";

@@ -181,6 +181,27 @@ TEST_CASE("A GIS gets the lines and areas of inflows, with what their tables say
     CHECK(area->GetFieldAsDouble("area_m2") == Approx(200.0));
 }
 
+TEST_CASE("Each polygon of an inflow has its own area in a GIS, and the volume of the table",
+          "[program][inflow][gis]") {
+    const Flood plane;
+    write_text(plane.folder() / "two.geojson",
+               R"({"type": "Feature", "properties": {}, "geometry": {"type": "MultiPolygon", "coordinates": [
+                  [[[60, 30], [70, 30], [70, 50], [60, 50], [60, 30]]],
+                  [[[80, 30], [90, 30], [90, 40], [80, 40], [80, 30]]]]}})");
+    write_text(plane.file(),
+               std::string(kFlood) + "[[inflow]]\nname = \"landslide\"\narea = \"two.geojson\"\ntable = \"q.csv\"\n");
+    const fs::path dir = plane.folder() / "out";
+    REQUIRE(plane.frana("run CASE --quiet --set 'output.formats=[\"geotiff\"]' --until 4 --out " + dir.string()).code ==
+            0);
+    const Layer layer(dir / "results.gpkg", "inflow_areas");
+    REQUIRE(layer.get().GetFeatureCount() == 2);
+    for (const double area : {200.0, 100.0}) {
+        const OGRFeatureUniquePtr row(layer.get().GetNextFeature());
+        CHECK(row->GetFieldAsDouble("area_m2") == Approx(area));
+        CHECK(row->GetFieldAsDouble("volume_m3") == Approx(kVolume).epsilon(1e-13));
+    }
+}
+
 TEST_CASE("Pictures of a run show its inflows, drawn again too, and not those whose file has gone",
           "[program][inflow][figures]") {
     const Flood plane;

@@ -191,8 +191,11 @@ TEST_CASE("a film at a gauge has no speed in the report, as it has none among th
     fs::create_directories(folder.path() / "gauges");
     std::ofstream(folder.path() / "gauges" / "g.csv") << "t [s],depth [m],speed [m/s]\n1,0.0008,13.3\n2,0.05,2.5\n";
     const std::vector<Gauge> gauges{{"g", Vec2(0, 0)}};
-    CHECK_THAT(gauge_section(gauges, 0.1, folder.path()), Catch::Contains("| not reached | 0.05 m | 2.5 m/s |"));
-    CHECK_THAT(gauge_section(gauges, 1.0, folder.path()), Catch::Contains("| not reached | 0.05 m | 0 m/s |"));
+    CHECK_THAT(gauge_section(gauges, 0.1, false, folder.path()), Catch::Contains("| not reached | 0.05 m | 2.5 m/s |"));
+    CHECK_THAT(gauge_section(gauges, 1.0, false, folder.path()), Catch::Contains("| not reached | 0.05 m | 0 m/s |"));
+    // Rasters have what became bed, the series has not: the report tells them apart.
+    CHECK_THAT(gauge_section(gauges, 0.1, false, folder.path()), !Catch::Contains("flow alone"));
+    CHECK_THAT(gauge_section(gauges, 0.1, true, folder.path()), Catch::Contains("Depths are of the flow alone"));
 }
 
 TEST_CASE("round-off of a total is nothing that left the domain") {

@@ -6,6 +6,7 @@
 #include "catch.h"
 #include "compare/nearest.h"
 #include "compare/overlap.h"
+#include "compare/union_area.h"
 
 using namespace frana;
 
@@ -123,6 +124,29 @@ TEST_CASE("Holes are missing from the survey and parts add up, whichever way the
         for (Polygon& part : parts)
             for (auto& ring : part.rings) std::reverse(ring.begin(), ring.end());
     }
+}
+
+TEST_CASE("What several polygons cover is counted once, holes apart, wherever they lie on the map") {
+    const Vec2 far(612345.6, 5212345.6);
+    const auto at_far = [&](std::vector<Polygon> parts) {
+        for (Polygon& part : parts)
+            for (auto& ring : part.rings)
+                for (Vec2& corner : ring) corner += far;
+        return survey_of(parts);
+    };
+    const Polygon square{{box(0, 0, 100, 100)}}, next{{box(80, -20, 180, 60)}},
+        holed{{box(0, 0, 100, 100), box(20, 20, 60, 60)}};
+    constexpr double kDigits = 1e-9;  // of corners there, to 1e-9 m
+    const auto once = [&](double value) { return Approx(value).epsilon(kDigits); };
+    CHECK(union_area(at_far({square})) == once(1e4));
+    CHECK(union_area(at_far({square, square})) == once(1e4));
+    CHECK(union_area(at_far({square, next})) == once(1e4 + 8e3 - 20 * 60));
+    CHECK(union_area(at_far({holed})) == once(1e4 - 1600));
+    CHECK(union_area(at_far({holed, Polygon{{box(30, 30, 40, 140)}}})) == once(1e4 - 1600 + 10 * 30 + 10 * 40));
+    // A diamond whose corners stick out of a square by 20 m each, in triangles as wide as twice that.
+    const Polygon diamond{{{{50, -20}, {120, 50}, {50, 120}, {-20, 50}}}};
+    CHECK(union_area(at_far({square, diamond})) == once(1e4 + 4 * 20 * 20));
+    CHECK(union_area({}) == 0.0);
 }
 
 TEST_CASE("What is surveyed outside the raster is missed, and told apart") {

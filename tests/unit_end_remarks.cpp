@@ -93,3 +93,20 @@ TEST_CASE("A flow that was nowhere deeper than the footprint depth is remarked u
     summary.extremes = {};
     CHECK(frana::remarks_at_end(simulation, summary).empty());
 }
+
+TEST_CASE("Free water that was nowhere deeper than the footprint depth is remarked upon as well", "[remarks][water]") {
+    struct Water : frana::FakeSimulation {
+        frana::Extras extras() const override {
+            frana::Extras extras;
+            extras.water.emplace();
+            return extras;
+        }
+    };
+    frana::RunSummary summary;
+    summary.reason = "end", summary.extremes.max_depth = 0.08;
+    const auto said = frana::remarks_at_end(Water(), summary);
+    REQUIRE(said.size() == 1);
+    CHECK_THAT(said.front().text, Contains("found a flow of 0.08 m at most"));
+    summary.extremes.max_covered_area = 25.0;
+    CHECK(frana::remarks_at_end(Water(), summary).empty());
+}

@@ -53,7 +53,8 @@ TEST_CASE("Plausible values lie in order, within what their key allows, and name
         CHECK(row.low <= row.high);
         CHECK(parameter->range.holds(row.low));
         CHECK(parameter->range.holds(row.high));
-        const bool known = !*row.kind || std::count(kind->choices.begin(), kind->choices.end(), row.kind) == 1;
+        const bool known = !*row.kind || row.kind == std::string(kFreeWater) ||
+                           std::count(kind->choices.begin(), kind->choices.end(), row.kind) == 1;
         CHECK(known);
         const std::string source = row.source;
         const bool year = std::any_of(source.begin(), source.end(), [](char c) { return std::isdigit(c); });
@@ -216,4 +217,41 @@ TEST_CASE("Ranges go with the bed law, and angles are compared as angles", "[par
                         "case.toml"),
         slope_gis());
     for (const std::string& line : scene.log) CHECK(line.find("PARAMETERS") == std::string::npos);  // no kind
+}
+
+// Nothing was said of them in any range, not of 0.9 nor of a raster.
+TEST_CASE("Friction of free water is judged whatever the kind, in zones and rasters too", "[parameters][scene]") {
+    const auto found = [](const std::string& water, FakeGis gis, const std::string& rest = "") {
+        const std::string text =
+            "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\nend = 20\n"
+            "[water]\nmodel = \"free\"\n" +
+            water + rest;
+        std::vector<std::string> said;
+        for (const std::string& line : build_scene(CaseFile::parse(text, "case.toml"), gis).log)
+            if (line.find("cases/PARAMETERS.md") != std::string::npos) said.push_back(line);
+        return said;
+    };
+    const auto manning = [](const std::string& n) { return "friction = \"manning\"\nmanning_n = " + n + "\n"; };
+    const auto darcy = [](const std::string& f) { return "friction = \"darcy_weisbach\"\ndarcy_f = " + f + "\n"; };
+    for (const char* fit : {"0.01", "0.03", "0.8"}) CHECK(found(manning(fit), slope_gis()).empty());
+    for (const char* fit : {"0.02", "1.0", "100"}) CHECK(found(darcy(fit), slope_gis()).empty());
+    const auto rough = found(manning("0.9"), slope_gis());
+    REQUIRE(rough.size() == 1);
+    CHECK(rough[0].find("water.manning_n: found 0.9; expected 0.008 to 0.8 s/m^(1/3), as in") != std::string::npos);
+    CHECK(found(manning("0.002"), slope_gis()).size() == 1);
+    CHECK(found(darcy("0.001"), slope_gis()).size() == 1);
+    CHECK(found(darcy("200"), slope_gis()).size() == 1);
+    const std::string zone = "[[material.zone]]\noutline = \"release.geojson\"\nwater.manning_n = 0.95\n";
+    const auto of_zone = found(manning("0.03"), slope_gis(), zone);
+    REQUIRE(of_zone.size() == 1);
+    CHECK(of_zone[0].find("found 0.95") != std::string::npos);
+    FakeGis gis = slope_gis();
+    gis.rasters["n.tif"] =
+        sampled(gis.rasters["dem.tif"].geometry, [](double x, double) { return x < 1100.0 ? 0.03 : 0.9; });
+    const auto of_raster = found(manning("\"n.tif\""), gis);
+    REQUIRE(of_raster.size() == 1);
+    CHECK(of_raster[0].find("(the largest of its raster): found 0.9") != std::string::npos);
+    const std::string told = describe("water.darcy_f");
+    CHECK(told.find("    water: 0.005 to 10, channels, from smooth ones to beds of boulders; a common range\n") !=
+          std::string::npos);
 }

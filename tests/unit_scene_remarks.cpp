@@ -237,10 +237,22 @@ TEST_CASE("Pixels of a depth without data are counted where the release claims m
     CHECK(remarks(text, gis, "taken as no material").empty());
     gis.rasters["depth.tif"].at(7, 6) = Raster::nodata;
     const std::string said = remark(text, gis, "taken as no material");
-    CHECK(said.find("release.0.depth: found no data in 1 of ") != std::string::npos);
+    CHECK(said.find("release.0.depth: found no data in 1 of 15 ") != std::string::npos);
     const std::string everywhere =
         "[terrain]\ndem = \"dem.tif\"\n[[release]]\ndepth = \"depth.tif\"\n[time]\nend = 20\n";
     CHECK(remark(everywhere, gis, "taken as no material").find("no data in 2 of 400 pixels") != std::string::npos);
+}
+
+// Pixels north and east of it, which its edges only meet, were counted as well.
+TEST_CASE("Pixels that an outline meets at its edge only need no depth", "[scene][remarks]") {
+    FakeGis gis = slope(0.5);
+    gis.rasters["depth.tif"] = sampled({20, 20, 1005, 2005, 10}, [](double x, double y) {
+        return x > 1050 && x < 1100 && y > 2050 && y < 2080 ? 2.0 : Raster::nodata;
+    });
+    const std::string text = case_of(coulomb + "bed.mu = 0.4", "\"depth.tif\"");
+    CHECK(remarks(text, gis, "taken as no material").empty());
+    gis.polygons["release.geojson"] = rectangle(1050, 2050, 1101, 2080);
+    CHECK(remark(text, gis, "taken as no material").find("no data in 3 of 18 pixels") != std::string::npos);
 }
 
 TEST_CASE("A margin filled with zeros is remarked upon, a coast is not", "[scene][remarks]") {

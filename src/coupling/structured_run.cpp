@@ -149,11 +149,11 @@ void StructuredRun::accumulate_water() {
     status_.max_speed_on_map = std::max(status_.max_speed_on_map, w.max_speed);
 }
 
-/// Water that is still to come in is about to begin. Rain may move solids that stand yet.
+/// Water that is still to come in is about to begin. Rain may move solids that stand yet. What soaks in gets less.
 bool StructuredRun::may_rest() const {
     if (!both_) return true;
     const WaterFlow& water = both_->water();
-    return !water.sources_go_on() && !water.body().rain;
+    return !water.sources_go_on() && !water.body().rain && !water.soaks_in();
 }
 
 bool StructuredRun::more_comes() const {

@@ -201,9 +201,8 @@ private:
                 }
         }
     }
-    /// Each particle's volume over the square around it, shared by the cells there: edges stay sharp. Outer cells go on beyond
-    /// their nodes, where no particle is, and are as deep there. A release up to one level within its shore is at that level
-    /// in each cell, so that it rests.
+    /// Each particle's volume over the square around it, shared by the cells there: edges stay sharp. A release up to one
+    /// level within its shore is at that level in each cell, so that it rests.
     void fill(const Scene& scene) {
         const Seeds& seeds = scene.particles;
         for (std::size_t p = 0; p < seeds.x.size(); ++p) {
@@ -216,12 +215,6 @@ private:
                 });
             });
         }
-        for (Index j = 0; j < g_.ny; ++j)
-            for (Index i = 0; i < g_.nx; ++i) {
-                const double shares = (i == 0 || i == g_.nx - 1 ? 2.0 : 1.0) * (j == 0 || j == g_.ny - 1 ? 2.0 : 1.0);
-                const std::size_t k = static_cast<std::size_t>(j * g_.nx + i);
-                depth_[k] *= shares, qx_[k] *= shares, qy_[k] *= shares;
-            }
         for (std::size_t k = 0; scene.still_surface && k < depth_.size(); ++k)
             if (depth_[k] > 0.0) depth_[k] = std::max(0.0, *scene.still_surface - scene.bed.values[k]);
     }

@@ -215,6 +215,11 @@ void GdalReader::require_metres(const std::filesystem::path& file) const {
     gdal::require_metre_values({file, &raster.crs(), {}, raster.unit(), raster.scaled()});
 }
 
+std::string GdalReader::unit_of(const std::filesystem::path& file) const {
+    std::vector<std::string> said_when_it_is_read;
+    return RasterFile(file, gdal::Meaning::any, said_when_it_is_read).unit();
+}
+
 RasterPlace GdalReader::place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
                                  const std::string& crs_wkt) const {
     std::vector<std::string> said_when_it_is_read;

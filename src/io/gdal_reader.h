@@ -25,6 +25,8 @@ public:
     /// The unit is that of the band or, where that declares none, of the CRS's heights.
     void require_metres(const std::filesystem::path& file) const override;
 
+    std::string unit_of(const std::filesystem::path& file) const override;
+
     RasterPlace place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
                          const std::string& crs_wkt) const override;
 

@@ -18,12 +18,12 @@ namespace {
 
 using Log = std::vector<std::string>;
 
-std::vector<Material> materials_of(const std::vector<Release>& releases, const GridGeometry& grid) {
+std::vector<Material> materials_of(const std::vector<Release>& releases, const GridGeometry& grid, Reach reach) {
     std::vector<Material> materials;
     materials.reserve(releases.size());
     for (std::size_t r = 0; r < releases.size(); ++r) {
         const std::string& name = releases[r].name;
-        materials.emplace_back(releases[r], grid, name.empty() ? fmt::format("release {}", r + 1) : name);
+        materials.emplace_back(releases[r], grid, name.empty() ? fmt::format("release {}", r + 1) : name, reach);
     }
     return materials;
 }
@@ -71,9 +71,9 @@ ReleaseReport measured(const Material& material, const GridGeometry& grid, Log& 
     const double all = whole.volume + material.release().left_out;
     report.clipped_volume = std::max(0.0, all - inside.volume);
     if (report.clipped_volume > 1e-9 * report.volume)
-        log.push_back(
-            fmt::format("{}: {:.6g} m3 ({:.3g} % of it) lie beyond the outer nodes of the grid and are left out",
-                        material.name(), report.clipped_volume, 100.0 * report.clipped_volume / all));
+        log.push_back(fmt::format("{}: {:.6g} m3 ({:.3g} % of it) lie beyond the outer {} of the grid and are left out",
+                                  material.name(), report.clipped_volume, 100.0 * report.clipped_volume / all,
+                                  material.reach() == Reach::nodes ? "nodes" : "pixels"));
     return report;
 }
 
@@ -84,7 +84,7 @@ void remark_bare_outline(const Material& material, const ReleaseReport& report, 
     Release bare;
     bare.outline = release.outline;
     bare.depth = 1.0;
-    const Material outline(bare, grid, material.name());
+    const Material outline(bare, grid, material.name(), material.reach());
     const double area = outline.totals(outline.box()).area;
     if (report.area < 0.999 * area)
         log.push_back(fmt::format("{}: {:.3g} % of its outline has no depth in {}", material.name(),
@@ -175,7 +175,8 @@ void check(const std::vector<Release>& releases, const Raster& bed, const Partic
 double volume_of(const std::vector<Release>& releases, const GridGeometry& grid) {
     double sum = 0.0;
     Log said_later;
-    for (const Material& material : materials_of(releases, grid)) sum += measured(material, grid, said_later).volume;
+    for (const Material& material : materials_of(releases, grid, Reach::nodes))
+        sum += measured(material, grid, said_later).volume;
     return sum;
 }
 
@@ -183,7 +184,7 @@ Seeds make_seeds(const std::vector<Release>& releases, const Raster& bed, const 
                  std::vector<ReleaseReport>& reports, std::vector<std::string>& log) {
     check(releases, bed, options);
     const GridGeometry& grid = bed.geometry;
-    const std::vector<Material> materials = materials_of(releases, grid);
+    const std::vector<Material> materials = materials_of(releases, grid, options.reach);
     reports.clear();
     double area = 0.0;
     for (const Material& material : materials) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "particles/material.h"
 #include "particles/release.h"
 #include "particles/seeds.h"
 
@@ -19,6 +20,7 @@ struct ParticleOptions {
     double per_cell = 4;         ///< particles per grid cell, > 0
     std::optional<Index> count;  ///< particles of all releases together; replaces per_cell
     Placement placement = Placement::lattice;
+    Reach reach = Reach::nodes;  ///< with pixels, those beyond the outer nodes stand on the line of these
 };
 
 /// The records of one release.
@@ -36,7 +38,7 @@ struct ReleaseReport {
 /// [m^3]. Throws UserError on a release whose depth is no number, or without any volume.
 double volume_of(const std::vector<Release>& releases, const GridGeometry& grid);
 
-/// Places the particles of all releases on the grid of `bed` (material lives between its outer nodes). Gives each the
+/// Places the particles of all releases on the grid of `bed` (material lives as far as its `reach`). Gives each the
 /// volume of its own patch. On the lattice the first point stands half a spacing from node (0, 0). The spacing is cell
 /// / sqrt(per_cell), or is sought so that the number comes near to `count`. A lattice that fits the grid is taken when
 /// it comes within 2 %. r2 and slope meet `count` exactly. Same input, same bits. Cost: linear in particles plus pixels

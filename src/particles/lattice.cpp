@@ -93,7 +93,8 @@ public:
 private:
     static double inside(double centre, double half, double length) {
         if (centre >= 0.0 && centre <= length) return centre;
-        return 0.5 * (std::max(centre - half, 0.0) + std::min(centre + half, length));
+        const double middle = 0.5 * (std::max(centre - half, 0.0) + std::min(centre + half, length));
+        return std::clamp(middle, 0.0, length);  // of water a patch may lie in the pixels beyond
     }
     const Raster& bed_;
     const Lattice& lattice_;

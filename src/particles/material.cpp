@@ -27,9 +27,11 @@ Box Box::common(const Box& o) const {
     return {std::max(x0, o.x0), std::max(y0, o.y0), std::min(x1, o.x1), std::min(y1, o.y1)};
 }
 
-Material::Material(const Release& release, const GridGeometry& grid, std::string name)
-    : release_(release), name_(std::move(name)) {
-    domain_ = {0.0, 0.0, static_cast<double>(grid.nx - 1) * grid.cell, static_cast<double>(grid.ny - 1) * grid.cell};
+Material::Material(const Release& release, const GridGeometry& grid, std::string name, Reach reach)
+    : release_(release), name_(std::move(name)), reach_(reach) {
+    const double rim = reach == Reach::pixels ? 0.5 * grid.cell : 0.0;
+    domain_ = {-rim, -rim, static_cast<double>(grid.nx - 1) * grid.cell + rim,
+               static_cast<double>(grid.ny - 1) * grid.cell + rim};
     unclipped_box_ = {-kFar, -kFar, kFar, kFar};
     if (release.outline) take_outline(grid);
     if (release.depth_field) take_raster(grid);

@@ -36,6 +36,9 @@ struct PatchRow {
 };
 using VisitPatchRow = std::function<void(const PatchRow&)>;
 
+/// How far material reaches: particles live between the outer nodes, water in whole pixels.
+enum class Reach { nodes, pixels };
+
 struct MaterialTotals {
     double volume = 0.0, area = 0.0;
 };
@@ -43,11 +46,12 @@ struct MaterialTotals {
 class Material {
 public:
     /// Keeps a reference to the release. Throws UserError on a depth that is not a positive number.
-    Material(const Release& release, const GridGeometry& grid, std::string name);
+    Material(const Release& release, const GridGeometry& grid, std::string name, Reach reach);
 
     const std::string& name() const { return name_; }
     const Release& release() const { return release_; }
-    /// Where material lies between the outer nodes of the grid, and without that limit.
+    Reach reach() const { return reach_; }
+    /// Where material lies as far as it may reach on the grid, and without that limit.
     const Box& box() const { return box_; }
     const Box& unclipped_box() const { return unclipped_box_; }
 
@@ -73,6 +77,7 @@ private:
 
     const Release& release_;
     std::string name_;
+    Reach reach_;
     Box domain_, box_, unclipped_box_;
     Rings rings_;
     double pixel_x0_ = 0.0, pixel_y0_ = 0.0, pixel_ = 0.0;  ///< lower left corner and edge of the pixels [m]

@@ -166,10 +166,18 @@ std::vector<Vec2> points_of(const Material& material, Index count, Density densi
                            [&](double x, double y, const auto& u) { return u[2] < steepness.at(x, y); });
 }
 
+/// On the map, not beyond the outer nodes: of water a point may lie in the pixels beyond.
+Vec2 on_grid(const Vec2& point, const GridGeometry& g) {
+    const auto within = [&](double at, Index count) {
+        return std::clamp(at, 0.0, static_cast<double>(count - 1) * g.cell);
+    };
+    return {g.x0 + within(point.x(), g.nx), g.y0 + within(point.y(), g.ny)};
+}
+
 void require_ground(const Material& material, const std::vector<Vec2>& points, const Raster& bed) {
     const GridGeometry& g = bed.geometry;
     for (const Vec2& p : points)
-        if (!std::isfinite(bed_elevation(bed, g.x0 + p.x(), g.y0 + p.y())))
+        if (const Vec2 at = on_grid(p, g); !std::isfinite(bed_elevation(bed, at.x(), at.y())))
             throw UserError(
                 fmt::format("{}: material lies on nodata of the elevation model {} near pixel column {}, "
                             "row {} (x = {:.2f}, y = {:.2f}); fill the gap (gdal_fillnodata.py) or move "
@@ -221,8 +229,9 @@ OutlineFaults place_scattered(const Material& material, Index count, double area
     });
     share_with_empty(cells, nearest, volumes, areas);
     for (Index p = 0; p < count; ++p) {
-        seeds.x.push_back(bed.geometry.x0 + points[p].x());
-        seeds.y.push_back(bed.geometry.y0 + points[p].y());
+        const Vec2 at = on_grid(points[p], bed.geometry);
+        seeds.x.push_back(at.x());
+        seeds.y.push_back(at.y());
         seeds.volume.push_back(volumes[p]);
         seeds.depth.push_back(volumes[p] / areas[p]);
         seeds.size.push_back(std::sqrt(areas[p]));

@@ -58,10 +58,9 @@ void remark_on_work_of_walls(const RunSummary& summary, std::vector<EndRemark>& 
 }
 
 /// A limit that nothing ever exceeded: footprint, arrival and runout are then of nothing.
-void remark_on_footprint(const Simulation& simulation, const RunSummary& summary, std::vector<EndRemark>& remarks) {
+void remark_on_footprint(const RunSummary& summary, std::vector<EndRemark>& remarks) {
     const Extremes& most = summary.extremes;
     if (!has_answer(summary.reason) || most.max_covered_area > 0.0 || !(most.max_depth > 0.0)) return;
-    if (simulation.extras().water) return;  // whose surface is not among what is covered
     remarks.push_back({fmt::format(
         "output.footprint_depth: found a flow of {:.4g} m at most, nowhere deeper than that depth; expected "
         "some that is; the footprint is empty, so give a smaller output.footprint_depth",
@@ -111,7 +110,7 @@ std::vector<EndRemark> remarks_at_end(const Simulation& simulation, const RunSum
     remark_on_energy(summary, remarks);
     remark_on_virtual_mass(simulation.extras().water, summary, remarks);
     remark_on_work_of_walls(summary, remarks);
-    remark_on_footprint(simulation, summary, remarks);
+    remark_on_footprint(summary, remarks);
     return remarks;
 }
 

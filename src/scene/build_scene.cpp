@@ -252,6 +252,7 @@ private:
         const std::string& placement = case_.word("particles.placement");
         if (placement == "r2") options.placement = Placement::r2;
         if (placement == "slope") options.placement = Placement::slope;
+        if (scene_.water && !scene_.structure) options.reach = Reach::pixels;  // water alone fills cells
         std::vector<ReleaseReport> reports;
         const bool made = problems_.attempt(case_.file().string(), [&] {
             scene_.particles = make_seeds(releases_, scene_.bed, options, reports, scene_.log);

@@ -12,6 +12,8 @@ namespace {
 constexpr const char* mu = "material.bed.mu";
 constexpr const char* xi = "material.bed.xi";
 constexpr const char* manning = "material.bed.manning_n";
+constexpr const char* water_manning = "water.manning_n";
+constexpr const char* darcy = "water.darcy_f";
 constexpr const char* density = "material.density";
 constexpr const char* yield = "material.rheology.yield_stress";
 constexpr const char* viscosity = "material.rheology.viscosity";
@@ -72,6 +74,11 @@ const std::vector<ParameterRange>& parameter_ranges() {
         {"mud", viscosity, "", 1.0, 100.0, "mudflows", in_common_use},
         {"mud", manning, "manning", 0.03, 0.06, "hyperconcentrated flows", in_common_use},
         {"mud", density, "", 1300.0, 1900.0, "flowing", in_common_use},
+        {kFreeWater, water_manning, "", 0.008, 0.3, "channels and floodplains, from glass flumes to willows",
+         in_common_use},
+        {kFreeWater, water_manning, "", 0.1, 0.8, "sheet flow of centimetres through grass and woods", in_common_use},
+        {kFreeWater, darcy, "", 0.005, 10.0, "channels, from smooth ones to beds of boulders", in_common_use},
+        {kFreeWater, darcy, "", 1.0, 100.0, "sheet flow of centimetres through grass and woods", in_common_use},
         {"", "material.bed.mu_s", "pouliquen", 0.38, 0.38, "glass beads", jop},
         {"", "material.bed.mu_2", "pouliquen", 0.64, 0.64, "glass beads", jop},
         {"", "material.bed.i0", "pouliquen", 0.279, 0.279, "glass beads", jop},

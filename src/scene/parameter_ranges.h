@@ -9,13 +9,16 @@ namespace frana {
 
 /// A row of the table. Friction is told as material.bed.mu, also where a case gives an angle.
 struct ParameterRange {
-    const char* kind;  ///< word of case.kind; "": grains in the laboratory, no kind
+    const char* kind;  ///< word of case.kind, or kFreeWater; "": grains in the laboratory, no kind
     const char* key;
     const char* law;  ///< word of material.bed.law that the values belong to; "": any
     double low, high;
     const char* what;    ///< what was fitted or measured
     const char* source;  ///< "": a common range, without a source that was read
 };
+
+/// Of rows that free water is judged by, whatever the kind of the mass.
+inline constexpr const char* kFreeWater = "water";
 
 /// A kind of mass, and its density where a case gives none [kg/m3]: the middle of the common range.
 struct MassKind {

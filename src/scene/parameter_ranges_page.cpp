@@ -133,6 +133,13 @@ key's limits are the lowest and the highest of its rows for that bed law. A sing
 
 )";
 
+constexpr const char* water_notes =
+    R"(
+Free water is judged by these rows whatever `case.kind` is. Small streams at low stages have more: Manning's n of 0.047 to 7.95
+and f of 0.29 to 12 700, in five streams of British Columbia (Reid and Hickin 2008, Earth Surf. Process. Landforms 33, 2211;
+its abstract was read).
+)";
+
 constexpr const char* snow =
     R"(
 ## Snow: Voellmy-Salm classes
@@ -198,7 +205,8 @@ std::string ranges_in_words(const std::string& key) {
 std::string ranges_in_markdown() {
     std::string text = introduction + kinds_table();
     for (const MassKind& kind : mass_kinds()) text += ranges_of(kind.name, kind.name);
-    text += ranges_of("", "Grains in the laboratory") + priors_table();
+    text += ranges_of(kFreeWater, "Free water") + water_notes + ranges_of("", "Grains in the laboratory");
+    text += priors_table();
     return text + snow + salm_tables() + snow_notes + mud_table() + mud_notes + forest;
 }
 

@@ -30,6 +30,8 @@ const std::vector<RemarkRow>& remark_table() {
         {Remark::kind_range, "value outside of the kind", none, none,
          "found {value:.4g}; expected {what}, as in cases/PARAMETERS.md; check the value and its unit, or change "
          "case.kind"},
+        {Remark::water_range, "friction of free water", none, none,
+         "found {value:.4g}; expected {what}, as in cases/PARAMETERS.md; check the value and its unit"},
         {Remark::size_class, "size of a snow avalanche", none, none,
          "found {what}; expected the class of the {value:.6g} m3 that are released and come in; correct it, unless the "
          "friction of another size is meant"},

@@ -15,6 +15,7 @@ enum class Remark {
     friction,
     xi,
     kind_range,
+    water_range,
     size_class,
     release_slope,
     release_depth,

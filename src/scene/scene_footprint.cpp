@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "particles/generate.h"
+#include "particles/outline_area.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
@@ -105,6 +106,26 @@ NodeMarks nodes_under(const Release& release, const GridGeometry& grid) {
     if (!release.depth_field) return marks;
     const NodeMarks material = marks_of_field(*release.depth_field, grid);
     for (std::size_t k = 0; k < marks.size(); ++k) marks[k] = marks[k] && material[k];
+    return marks;
+}
+
+NodeMarks pixels_under(const Polygons& outline, const GridGeometry& pixels) {
+    constexpr double kSliver = 1e-6;  // of a pixel: round-off of coordinates, as of a file that was reprojected
+    const auto extent = pixels.pixel_extent();
+    const auto lines = [&](Index count) {
+        std::vector<double> all;
+        for (Index k = 0; k <= count; ++k) all.push_back(static_cast<double>(k) * pixels.cell);
+        return all;
+    };
+    OutlineArea areas(rings_of(outline, {extent[0], extent[1]}), lines(pixels.nx), lines(pixels.ny));
+    NodeMarks marks(static_cast<std::size_t>(pixels.size()), 0);
+    std::vector<double> area(static_cast<std::size_t>(pixels.nx));
+    for (Index j = 0; j < pixels.ny; ++j) {
+        const auto [first, second] = areas.row(j, area);
+        for (Index i = first; i < second; ++i)
+            marks[static_cast<std::size_t>(j * pixels.nx + i)] =
+                area[static_cast<std::size_t>(i)] > kSliver * pixels.cell * pixels.cell;
+    }
     return marks;
 }
 

@@ -129,6 +129,9 @@ Raster on_closer_nodes(const Raster& field, const GridGeometry& grid);
 /// Nodes under a release: those inside the outline or next to its edge, where the depth field has material.
 NodeMarks nodes_under(const Release& release, const GridGeometry& grid);
 
+/// Pixels that polygons cover a part of. Those that they meet at an edge or by round-off only are none.
+NodeMarks pixels_under(const Polygons& outline, const GridGeometry& pixels);
+
 /// Whether the ground stands at `level` or higher along the whole outline: it cuts through no lake of that level.
 bool holds_shore(const Release& release, const Raster& bed, double level);
 

@@ -11,6 +11,7 @@
 #include "base/layer_name.h"
 #include "scene/nodes_of_place.h"
 #include "scene/scene_parts.h"
+#include "scene/speed_unit.h"
 #include "terrain/bed_points.h"
 #include "terrain/part_of.h"
 
@@ -202,11 +203,10 @@ private:
         return marks;
     }
 
-    /// The pixels that the outline touches, or all.
+    /// The pixels that the outline covers a part of, or all.
     static NodeMarks claimed(const Release& release, const GridGeometry& pixels) {
-        Release bare;
-        bare.outline = release.outline;
-        return nodes_under(bare, pixels);
+        if (release.outline) return pixels_under(*release.outline, pixels);
+        return NodeMarks(static_cast<std::size_t>(pixels.size()), 1);
     }
 
     void set_depth(Release& release) const {
@@ -369,11 +369,28 @@ private:
     void set_velocity(Release& release) const {
         const std::string velocity = key("velocity");
         if (case_.is_text(velocity)) {
-            release.velocity_x = raster(case_.resolve(case_.words(velocity)[0]));
-            release.velocity_y = raster(case_.resolve(case_.words(velocity)[1]));
+            release.velocity_x = speed_raster(case_.resolve(case_.words(velocity)[0]));
+            release.velocity_y = speed_raster(case_.resolve(case_.words(velocity)[1]));
         } else {
             release.velocity = Vec2(case_.numbers(velocity)[0], case_.numbers(velocity)[1]);
         }
+    }
+
+    /// In m/s, whatever unit of speed its file has.
+    Raster speed_raster(const std::filesystem::path& file) const {
+        const std::string unit = reader_.unit_of(file), name = file.filename().string();
+        const std::optional<double> factor = metres_per_second(unit);
+        if (!factor)
+            throw UserError(
+                fmt::format("{}: found values in {}; expected m/s or another unit of speed, such as km/h; convert "
+                            "them, or correct the unit: gdal_edit.py -units m/s {}",
+                            name, unit, file.string()));
+        Raster speeds = raster(file);
+        if (*factor == 1.0) return speeds;
+        for (double& speed : speeds.values) speed *= *factor;
+        const std::string remark = fmt::format("{}: values in {}, converted to m/s", name, unit);
+        if (std::find(log_.begin(), log_.end(), remark) == log_.end()) log_.push_back(remark);
+        return speeds;
     }
 
     const CaseFile& case_;

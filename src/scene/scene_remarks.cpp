@@ -69,6 +69,12 @@ void remark_feet(Scene& scene, const std::string& place) {
     remark_on(scene.log, Remark::high_as_in_feet, place, {highest, 0.0, files});
 }
 
+/// Whether a value lies in a range but for round-off.
+bool lies_in(double value, double low, double high) {
+    constexpr double round_off = 1e-9;
+    return value >= low * (1.0 - round_off) && value <= high * (1.0 + round_off);
+}
+
 /// A value outside of the range for the kind of mass. Its meaning is that of the key `meaning`.
 void judge_by_kind(const CaseFile& file, const std::string& place, double value, const std::string& meaning,
                    Scene& scene) {
@@ -76,12 +82,32 @@ void judge_by_kind(const CaseFile& file, const std::string& place, double value,
     const RangeKey known = range_key(meaning);
     const std::optional<Plausible> range = plausible(kind, known.key, file.word("material.bed.law"));
     if (!range || range->low == range->high) return;  // one value that was published is no limit
-    constexpr double round_off = 1e-9;
     const double low = known.scale(range->low), high = known.scale(range->high);
-    if (value >= low * (1.0 - round_off) && value <= high * (1.0 + round_off)) return;
+    if (lies_in(value, low, high)) return;
     const std::string& unit = find_parameter(meaning)->unit;
     remark_on(scene.log, Remark::kind_range, place,
               {value, 0.0, fmt::format("{:.4g} to {:.4g}{} for {}", low, high, after_number(unit), kind)});
+}
+
+/// What brakes free water, outside of all that water flows over.
+void judge_water(const std::string& place, double value, const std::string& meaning, Scene& scene) {
+    const std::optional<Plausible> range = plausible(kFreeWater, meaning, "");
+    if (!range || lies_in(value, range->low, range->high)) return;
+    remark_on(
+        scene.log, Remark::water_range, place,
+        {value, 0.0,
+         fmt::format("{:.4g} to {:.4g}{}", range->low, range->high, after_number(find_parameter(meaning)->unit))});
+}
+
+/// Of all zones as well.
+void remark_on_water_friction(const CaseFile& file, Scene& scene) {
+    for (const std::string meaning : {"water.manning_n", "water.darcy_f"}) {
+        std::vector<std::string> keys = {meaning};
+        for (Index i = 0; i < file.count("material.zone"); ++i)
+            keys.push_back(fmt::format("material.zone.{}.{}", i, meaning));
+        for (const std::string& key : keys)
+            if (file.given(key) && !file.is_text(key)) judge_water(file.place(key), file.number(key), meaning, scene);
+    }
 }
 
 void remark_on_kind(const CaseFile& file, const std::string& key, const std::string& meaning, Scene& scene) {
@@ -169,6 +195,7 @@ void judge_end(const CaseFile& file, const std::string& key, const char* end, do
     if (name == "mu" || name == "mu_s" || name == "mu_2")
         judge_angle(file, place, std::atan(value) * constants::kRadian, scene);
     if (name == "xi") remark_on(scene.log, Remark::xi, place, {value});
+    judge_water(place, value, key, scene);
     const bool of_kind = find_parameter(key) && !range_key(key).key.empty() && name != "mu_s" && name != "mu_2";
     if (of_kind && file.has("case.kind")) judge_by_kind(file, place, value, key, scene);
 }
@@ -228,6 +255,7 @@ void remark_on_material(const CaseFile& file, Scene& scene) {
         xi(table + "xi");
     }
     remark_on_other_densities(file, scene);
+    remark_on_water_friction(file, scene);
     angle("material.structure.friction_angle_deg", false);
     for (Index i = 0; i < file.count("stage"); ++i) angle(fmt::format("stage.{}.friction_angle_deg", i), false);
     remark_on_kind(file, scene);
@@ -236,9 +264,12 @@ void remark_on_material(const CaseFile& file, Scene& scene) {
 void remark_on_friction_rasters(const CaseFile& file, Scene& scene) {
     if (!scene.friction) return;
     for (const std::string& key : rasters_of_laws(file)) {
-        const bool of_bed = key.rfind("material.bed.", 0) == 0, of_rheology = key.rfind("material.rheology.", 0) == 0;
-        if (!of_bed && !of_rheology) continue;
-        const std::string name = key.substr(key.rfind('.') + 1), in_zone = of_bed ? name : "rheology." + name;
+        const bool of_bed = key.rfind("material.bed.", 0) == 0, of_rheology = key.rfind("material.rheology.", 0) == 0,
+                   of_water = key.rfind("water.", 0) == 0;
+        if (!of_bed && !of_rheology && !of_water) continue;
+        const std::string name = key.substr(key.rfind('.') + 1), in_zone = of_bed     ? name
+                                                                           : of_water ? key
+                                                                                      : "rheology." + name;
         const bool degrees = name == "friction_angle_deg";  // laws have the tangent
         const FrictionPart::Extent found = extent_without_zones(file, scene, degrees ? "mu" : in_zone);
         const auto of_key = [&](double value) { return degrees ? std::atan(value) * constants::kRadian : value; };

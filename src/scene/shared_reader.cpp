@@ -90,6 +90,11 @@ void SharedReader::require_metres(const std::filesystem::path& file) const {
     inner_.require_metres(file);
 }
 
+std::string SharedReader::unit_of(const std::filesystem::path& file) const {
+    const std::lock_guard<std::recursive_mutex> alone(*mutex_);
+    return inner_.unit_of(file);
+}
+
 RasterPlace SharedReader::place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
                                    const std::string& crs_wkt) const {
     const std::lock_guard<std::recursive_mutex> alone(*mutex_);

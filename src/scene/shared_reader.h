@@ -21,6 +21,7 @@ public:
     /// The inner one's: what this one remembers would grow with each part.
     std::shared_ptr<const GisReader> lasting() const override;
     void require_metres(const std::filesystem::path& file) const override;
+    std::string unit_of(const std::filesystem::path& file) const override;
     RasterPlace place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
                          const std::string& crs_wkt) const override;
     std::optional<std::array<double, 4>> extent_above_zero(const std::filesystem::path& file,

@@ -53,6 +53,8 @@ public:
     virtual std::shared_ptr<const GisReader> lasting() const { return {}; }
     /// UserError for a raster that declares its numbers in another unit of length than the metre.
     virtual void require_metres(const std::filesystem::path& /*file*/) const {}
+    /// The unit that a raster declares for its numbers; empty: none.
+    virtual std::string unit_of(const std::filesystem::path& /*file*/) const { return {}; }
     /// How a raster lies to `extent` of a map of that CRS.
     virtual RasterPlace place_of(const std::filesystem::path& /*file*/, const std::array<double, 4>& /*extent*/,
                                  const std::string& /*crs_wkt*/) const {

@@ -339,6 +339,21 @@ bool WaterFlow::sources_go_on() const {
                        [&](const WaterSource& source) { return status_.time < source.time.back(); });
 }
 
+bool WaterFlow::soaks_in() const {
+    if (!body_.infiltration) return false;
+    const TileGrid& grid = body_.grid;
+    const auto soaks = [&](Index tile) {
+        const Index i0 = grid.tile_i(tile), j0 = grid.tile_j(tile);
+        for (Index j = std::max<Index>(j0, 0); j < std::min(j0 + kTile, grid.ny()); ++j)
+            for (Index i = std::max<Index>(i0, 0); i < std::min(i0 + kTile, grid.nx()); ++i) {
+                const Index k = grid.at(i, j);
+                if (body_.infiltration[k] > 0.0 && body_.now.h[k] > 0.0) return true;
+            }
+        return false;
+    };
+    return std::any_of(body_.work.begin(), body_.work.end(), soaks);
+}
+
 WaterState WaterFlow::at(Index i, Index j) const {
     const Index k = body_.grid.at(i, j);
     const double h = body_.now.h[k], per = h > body_.film ? 1.0 / h : 0.0;

@@ -223,6 +223,8 @@ public:
     bool sources_go_on() const;
     /// Whether water comes without end: as rain, or from a lake beyond a side.
     bool comes_on() const { return comes_on_; }
+    /// Whether ground that takes water has some on it.
+    bool soaks_in() const;
     /// Present + left + infiltrated - rained - entered - fed - given [m^3], and momentum the same way [m^4/s]: round-off
     double volume_residual() const;
     Vec2 momentum_residual() const;

@@ -43,7 +43,7 @@ std::vector<double> speeds_that_count(const std::vector<double>& depth, std::vec
     return speed;
 }
 
-std::string gauge_section(const std::vector<Gauge>& gauges, double footprint_depth,
+std::string gauge_section(const std::vector<Gauge>& gauges, double footprint_depth, bool becomes_bed,
                           const std::filesystem::path& run_dir) {
     if (gauges.empty()) return "";
     std::string text =
@@ -56,12 +56,14 @@ std::string gauge_section(const std::vector<Gauge>& gauges, double footprint_dep
         }
         text += fmt::format("| {} | {:.10g}, {:.10g} {}\n", gauge.name, gauge.point.x(), gauge.point.y(), flow);
     }
+    const char* const of_flow =
+        becomes_bed ? "Depths are of the flow alone; `peak_depth.tif` also has what became bed below it. " : "";
     return text + fmt::format(
                       "\nThese are values of the series in `gauges/`, which have a row for each step, interpolated "
                       "between the four nodes around the point; `rasters/` has the peaks of whole pixels, which may be "
-                      "larger or smaller. Arrival is the first time deeper than {:.4g} m (`output.footprint_depth`). "
+                      "larger or smaller. {}Arrival is the first time deeper than {:.4g} m (`output.footprint_depth`). "
                       "The speed is along the bed, of what is {:.4g} m deep or more.\n\n",
-                      footprint_depth, kSpeedCounts * footprint_depth);
+                      of_flow, footprint_depth, kSpeedCounts * footprint_depth);
 }
 
 }  // namespace frana

@@ -14,8 +14,8 @@ std::vector<double> speeds_that_count(const std::vector<double>& depth, std::vec
 
 /// A section of report.md: place, arrival and largest values of each gauge, from the series in gauges/ that
 /// figures/gauges_flow.png draws. It has arrived once it is deeper than `footprint_depth` [m]. Empty without gauges. A
-/// gauge whose series cannot be read has a row that says so.
-std::string gauge_section(const std::vector<Gauge>& gauges, double footprint_depth,
+/// gauge whose series cannot be read has a row that says so. Where flow becomes bed, it says that depths leave that out.
+std::string gauge_section(const std::vector<Gauge>& gauges, double footprint_depth, bool becomes_bed,
                           const std::filesystem::path& run_dir);
 
 }  // namespace frana

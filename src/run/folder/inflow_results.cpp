@@ -6,6 +6,8 @@
 
 #include "base/discharge.h"
 #include "base/error.h"
+#include "compare/outline.h"
+#include "compare/union_area.h"
 #include "io/gdal_reader.h"
 #include "run/folder/barrier_plans.h"
 #include "scene/case_file.h"
@@ -65,8 +67,10 @@ std::vector<ShapeLayer> inflow_layers(const Scene& scene, const std::vector<Infl
                                {"start_s", scene.inflows[k].time.front()},
                                {"end_s", facts.end}}};
         if (!places[k].line.empty()) lines.shapes.push_back(shape);
-        shape.attributes.emplace_back("area_m2", facts.area);
-        for (const Polygon& part : places[k].area.parts) areas.shapes.push_back({part, shape.attributes});
+        for (const Polygon& part : places[k].area.parts) {
+            areas.shapes.push_back({part, shape.attributes});
+            areas.shapes.back().attributes.emplace_back("area_m2", union_area(rings_of(Polygons{{part}, "", ""})));
+        }
     }
     return {std::move(lines), std::move(areas)};
 }

@@ -29,8 +29,8 @@ double time_of(const Inflow& inflow, double volume);
 std::vector<NamedLine> inflow_plans(const std::vector<InflowPlace>& places);
 
 /// Layer "inflow" of the lines, and "inflow_areas" of the polygons. Each has of its table volume_m3,
-/// peak_discharge_m3_s, peak_s, start_s and end_s. A polygon has area_m2 too, that of the whole inflow. `places` are
-/// those of the scene's inflows.
+/// peak_discharge_m3_s, peak_s, start_s and end_s. A polygon has area_m2 too, its own. `places` are those of the scene's
+/// inflows.
 std::vector<ShapeLayer> inflow_layers(const Scene& scene, const std::vector<InflowPlace>& places);
 
 }  // namespace frana

@@ -6,6 +6,7 @@
 
 #include "base/layer_name.h"
 #include "compare/outline.h"
+#include "compare/union_area.h"
 #include "io/gdal_reader.h"
 #include "scene/case_file.h"
 #include "scene/nodes_of_place.h"
@@ -22,13 +23,6 @@ const LateEntry* entry_of(const ReleaseSource& source, const std::vector<LateEnt
         return entry.name == name || entry.name.rfind(name + " ", 0) == 0;
     });
     return found == late.end() ? nullptr : &*found;
-}
-
-/// Without its holes [m2].
-double area_of_part(const Polygon& polygon) {
-    Polygons one;
-    one.parts = {polygon};
-    return area_of(rings_of(one));
 }
 
 /// Whether a ray to the east crosses the rings an odd number of times.
@@ -92,7 +86,7 @@ template <class Counts>
 std::optional<Raster> marks_of(const std::vector<ReleaseSource>& sources, const Raster& like, const Counts& counts) {
     std::optional<Raster> marks;
     for (const ReleaseSource& source : sources) {
-        if (!source.late || (source.outline.empty() && source.mask.empty()) || !counts(source)) continue;
+        if (!source.has_shape() || !counts(source)) continue;
         if (!marks) marks = Raster::filled(like.geometry, 0.0);
         if (source.mask.empty())
             mark_outline(source.outline, like.crs_wkt, *marks);
@@ -107,37 +101,69 @@ std::optional<Raster> marks_of(const std::vector<ReleaseSource>& sources, const 
 std::optional<Raster> released_later_on(const std::vector<ReleaseSource>& sources, const std::vector<LateEntry>& late,
                                         const Raster& like) {
     return marks_of(sources, like, [&](const ReleaseSource& source) {
-        const LateEntry* const entry = entry_of(source, late);
+        const LateEntry* const entry = source.late ? entry_of(source, late) : nullptr;
         return entry && entry->entered;
     });
 }
 
 std::optional<Raster> may_be_released_later_on(const std::vector<ReleaseSource>& sources, const Raster& like) {
-    return marks_of(sources, like, [](const ReleaseSource&) { return true; });
+    return marks_of(sources, like, [](const ReleaseSource& source) { return source.late; });
 }
 
+std::optional<Raster> released_at_start(const std::vector<ReleaseSource>& sources, const Raster& like) {
+    return marks_of(sources, like, [](const ReleaseSource& source) { return !source.late; });
+}
+
+namespace {
+
+struct ReleasePlan {
+    Polygons parts;
+    double area = 0.0;  ///< overlaps counted once [m2]
+};
+
+ReleasePlan plan_of_outline(const std::string& outline, const std::string& crs_wkt) {
+    std::vector<std::string> said_by_the_scene;
+    ReleasePlan plan{GdalReader().read_polygons(outline, crs_wkt, said_by_the_scene), 0.0};
+    plan.area = union_area(rings_of(plan.parts));
+    return plan;
+}
+
+/// The pixels above 0.
+ReleasePlan plan_of_mask(const std::string& file, const std::array<double, 4>& extent, const std::string& crs_wkt) {
+    std::vector<std::string> said_by_the_scene;
+    const Raster mask = GdalReader().read_mask(file, extent, crs_wkt, said_by_the_scene);
+    std::vector<std::uint8_t> marks(mask.values.size());
+    for (std::size_t k = 0; k < marks.size(); ++k) marks[k] = mask.values[k] > 0.0 ? 1 : 0;
+    const auto count = std::count(marks.begin(), marks.end(), 1);
+    ReleasePlan plan{{}, static_cast<double>(count) * mask.geometry.cell * mask.geometry.cell};
+    for (const AttributedShape& outline : pixel_outlines(mask.geometry, std::move(marks)))
+        plan.parts.parts.push_back(std::get<Polygon>(outline.shape));
+    return plan;
+}
+
+}  // namespace
+
 ShapeLayer release_layer(const std::vector<ReleaseSource>& sources, const std::vector<LateEntry>& late, double at_start,
-                         const std::string& crs_wkt) {
+                         const std::array<double, 4>& extent, const std::string& crs_wkt) {
     ShapeLayer layer{"release", {}};
     const auto first = std::count_if(sources.begin(), sources.end(), [](const auto& source) { return !source.late; });
     for (const ReleaseSource& source : sources) {
-        if (source.outline.empty()) continue;
+        if (!source.has_shape()) continue;
         double entered = 0.0, volume = first == 1 ? at_start : kUnknown;
         if (source.late) {
             const LateEntry* const entry = entry_of(source, late);
             entered = entry && entry->entered ? *entry->entered : kUnknown;
             volume = entry ? entry->volume : kUnknown;
         }
-        std::vector<std::string> said_by_the_scene;
-        Polygons outline = GdalReader().read_polygons(source.outline, crs_wkt, said_by_the_scene);
-        double area = 0.0;
-        for (const Polygon& part : outline.parts) area += area_of_part(part);
-        AttributedShape shape{outline.parts.front(),
+        ReleasePlan plan = source.outline.empty() ? plan_of_mask(source.mask, extent, crs_wkt)
+                                                  : plan_of_outline(source.outline, crs_wkt);
+        if (plan.parts.parts.empty()) continue;  // the file is another one by now
+        AttributedShape shape{plan.parts.parts.front(),
                               {{"release", static_cast<long long>(source.table)},
-                               {"area_m2", area},
+                               {"area_m2", plan.area},
                                {"entered_s", entered},
                                {"volume_m3", volume}}};
-        if (outline.parts.size() > 1) shape.shape = std::move(outline);  // one row: the volume is that of all
+        if (plan.parts.parts.size() > 1) shape.shape = std::move(plan.parts);  // one row: the volume is that of all
         layer.shapes.push_back(std::move(shape));
     }
     return layer;

@@ -457,9 +457,9 @@ std::string report_markdown(const RunRecord& record, const std::filesystem::path
     const std::vector<Product> products = products_in(run_dir);
     const std::string survey = record.comparison ? comparison_section(*record.comparison) : "";
     return heading(record) + remarks(record) + results(record) + survey +
-           gauge_section(record.gauges, record.footprint_depth, run_dir) + sections(record) + barriers(record) +
-           friction(record) + budgets(record) + figures(record) + parameter_table(record) + files(record, products) +
-           times(record.summary);
+           gauge_section(record.gauges, record.footprint_depth, record.summary.last.bed.deposited > 0.0, run_dir) +
+           sections(record) + barriers(record) + friction(record) + budgets(record) + figures(record) +
+           parameter_table(record) + files(record, products) + times(record.summary);
 }
 
 std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_dir) {

@@ -94,24 +94,33 @@ ShapeLayer barriers(const std::vector<ProductRaster>& rasters, RunRecord& record
     }
 }
 
-/// Their outlines. What began as a mask or a raster is known by its pixels.
-ShapeLayer releases(const std::vector<ProductRaster>& rasters, RunRecord& record) {
+/// Pixels with material at the start in none of the outlines and masks: of a surface, or all of the terrain.
+std::vector<AttributedShape> material_without_shape(const Raster& arrival, const std::vector<ReleaseSource>& sources) {
+    Raster elsewhere = arrival;
+    if (const std::optional<Raster> marks = released_at_start(sources, arrival))
+        for (std::size_t k = 0; k < elsewhere.values.size(); ++k)
+            if (marks->values[k] > 0.0) elsewhere.values[k] = Raster::nodata;
+    return outlines_where(elsewhere, [](double time) { return time == 0.0; });
+}
+
+/// Outlines and masks. A release with neither is known by the pixels where material was at the start.
+ShapeLayer releases(const Scene& scene, const std::vector<ProductRaster>& rasters, RunRecord& record) {
     ShapeLayer layer{"release", {}};
     if (rasters.empty()) return layer;
+    const auto& all = record.release_sources;
+    const bool bare = std::any_of(all.begin(), all.end(),
+                                  [](const ReleaseSource& source) { return !source.late && !source.has_shape(); });
+    const ProductRaster* const arrival = find_product(rasters, "arrival_time");
+    const GridGeometry& terrain = scene.wider ? scene.wider->grid : scene.bed.geometry;
     try {
-        layer = release_layer(record.release_sources, record.extras.late, record.release_volume,
+        layer = release_layer(all, record.extras.late, record.volume_of_releases, terrain.pixel_extent(),
                               rasters.front().raster.crs_wkt);
+        if (bare && arrival)
+            for (AttributedShape& shape : material_without_shape(arrival->raster, all))
+                layer.shapes.push_back(std::move(shape));
     } catch (const UserError& error) {
         record.warnings.push_back(fmt::format("outlines of releases were not written for a GIS: {}", error.what()));
     }
-    const auto& all = record.release_sources;
-    const bool bare = layer.shapes.empty() || std::any_of(all.begin(), all.end(), [](const ReleaseSource& source) {
-                          return !source.late && source.outline.empty();
-                      });
-    const ProductRaster* const arrival = find_product(rasters, "arrival_time");
-    if (bare && arrival)
-        for (AttributedShape& shape : outlines_where(arrival->raster, [](double time) { return time == 0.0; }))
-            layer.shapes.push_back(std::move(shape));
     return layer;
 }
 
@@ -124,7 +133,7 @@ std::vector<ShapeLayer> result_layers(const Scene& scene, const std::vector<Prod
         layers.push_back(deeper("footprint", *covered, {scene.output.footprint_depth}));
         layers.push_back(deeper("outlines", *covered, {0.5, 1.0, 2.0, 5.0}));
     }
-    layers.push_back(releases(rasters, record));
+    layers.push_back(releases(scene, rasters, record));
     ShapeLayer gauges{"gauges", {}}, profiles{"profiles", {}}, survey{"survey", {}};
     if (!rasters.empty()) {
         for (const Gauge& gauge : scene.gauges)

@@ -13,7 +13,8 @@ namespace frana {
 /// The layers of results.gpkg, those that are empty left out:
 /// - barriers: barrier_layer() (barrier_results.h);
 /// - footprint: outlines of what was ever deeper than the footprint depth; outlines: of 0.5, 1, 2 and 5 m (depth_m, area_m2);
-/// - release: outlines of the pixels where material stood at the start (area_m2);
+/// - release: release_layer() (release_results.h), and of releases without a shape the pixels where material was at the
+///   start (area_m2);
 /// - gauges, profiles: the largest peak_depth_m, peak_speed_m_s and peak_dynamic_pressure_Pa (density times speed
 ///   squared) of the pixels
 ///   that they lie on, and the earliest arrival_s there;

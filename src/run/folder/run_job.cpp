@@ -92,6 +92,8 @@ void note_simulation(RunRecord& record, const Scene& scene, const Simulation& si
     if (const Friction* used = simulation.friction()) record.friction = used->parts, record.friction_of_part = true;
     if (!record.extras.water || record.of_water_alone())  // of which the scene's particles tell a part only
         record.release_volume = (record.summary.first.mass - record.summary.first.mass_in) / scene.density;
+    const bool has_lake = scene.water && scene.water->level;
+    if (!has_lake) record.volume_of_releases = record.release_volume;
 }
 
 void note_results(RunRecord& record, const std::vector<ProductRaster>& rasters) {

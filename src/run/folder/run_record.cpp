@@ -201,6 +201,7 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     if (scene.friction) record.friction = scene.friction->parts;
     record.particles = scene.particles.count();
     for (const double volume : scene.particles.volume) record.release_volume += volume;
+    record.volume_of_releases = record.release_volume;
     record.end = record.whole_end = scene.end;
     if (file.given("time.end")) record.whole_end = file.number("time.end");
     record.footprint_depth = scene.output.footprint_depth;

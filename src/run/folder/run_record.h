@@ -42,16 +42,17 @@ struct RunRecord {
     std::string command_line;  ///< overrides of the case: "--set a=b --until 5"; empty when none
     GridGeometry grid;
     bool has_crs = false;
-    double density = 1000.0;                                         ///< [kg/m^3]
-    Index particles = 0;                                             ///< at the start
-    double release_volume = 0.0;                                     ///< [m^3]
-    double end = 0.0;                                                ///< planned [s]
-    double whole_end = 0.0;                                          ///< of the case, without --until [s]
-    bool netcdf = false;                                             ///< the case has series.nc
-    bool page = false;                                               ///< figures/view.html is to be made
-    bool pictures_cut_off = false;                                   ///< an end was requested while they were drawn
-    double footprint_depth = 0.1;                                    ///< [m]
-    double footprint_area = 0.0;                                     ///< ever deeper than footprint_depth [m2]
+    double density = 1000.0;          ///< [kg/m^3]
+    Index particles = 0;              ///< at the start
+    double release_volume = 0.0;      ///< at the start, with the lake of water alone [m^3]
+    double volume_of_releases = 0.0;  ///< the same without that lake [m^3]
+    double end = 0.0;                 ///< planned [s]
+    double whole_end = 0.0;           ///< of the case, without --until [s]
+    bool netcdf = false;              ///< the case has series.nc
+    bool page = false;                ///< figures/view.html is to be made
+    bool pictures_cut_off = false;    ///< an end was requested while they were drawn
+    double footprint_depth = 0.1;     ///< [m]
+    double footprint_area = 0.0;      ///< ever deeper than footprint_depth [m2]
     double peak_depth = 0.0, peak_speed = 0.0, peak_pressure = 0.0;  ///< of the rasters [m], [m/s], [Pa]
     double peak_dynamic_pressure = 0.0;                              ///< [Pa]
     double final_depth = 0.0;       ///< deepest at the end, with what has become bed [m]
