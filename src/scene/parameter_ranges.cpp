@@ -9,12 +9,12 @@
 namespace frana {
 namespace {
 
-constexpr const char* mu = "material.bed.mu";
-constexpr const char* xi = "material.bed.xi";
+constexpr const char* bed_mu = "material.bed.mu";
+constexpr const char* bed_xi = "material.bed.xi";
 constexpr const char* manning = "material.bed.manning_n";
 constexpr const char* water_manning = "water.manning_n";
 constexpr const char* darcy = "water.darcy_f";
-constexpr const char* density = "material.density";
+constexpr const char* material_density = "material.density";
 constexpr const char* yield = "material.rheology.yield_stress";
 constexpr const char* viscosity = "material.rheology.viscosity";
 constexpr const char* salm_guide =
@@ -42,38 +42,38 @@ const std::vector<MassKind>& mass_kinds() {
 
 const std::vector<ParameterRange>& parameter_ranges() {
     static const std::vector<ParameterRange> table = {
-        {"snow", mu, "voellmy", 0.14, 0.47, "all sizes, grounds, altitudes and return periods", salm_guide},
-        {"snow", xi, "voellmy", 900.0, 4000.0, "all sizes, grounds and altitudes", salm_guide},
-        {"snow", mu, "voellmy", 0.155, 0.155, "ten very long run-outs, for zoning",
+        {"snow", bed_mu, "voellmy", 0.14, 0.47, "all sizes, grounds, altitudes and return periods", salm_guide},
+        {"snow", bed_xi, "voellmy", 900.0, 4000.0, "all sizes, grounds and altitudes", salm_guide},
+        {"snow", bed_mu, "voellmy", 0.155, 0.155, "ten very long run-outs, for zoning",
          "Buser and Frutiger 1980, J. Glaciol."},
-        {"snow", xi, "voellmy", 1120.0, 1120.0, "ten very long run-outs, for zoning",
+        {"snow", bed_xi, "voellmy", 1120.0, 1120.0, "ten very long run-outs, for zoning",
          "Buser and Frutiger 1980, J. Glaciol."},
-        {"snow", mu, "voellmy", 0.15, 0.15, "large design avalanches", martinelli},
-        {"snow", xi, "voellmy", 1200.0, 1600.0, "large design avalanches", martinelli},
-        {"snow", xi, "voellmy", 700.0, 800.0, "hard slab, slow wet slab, soft slab through timber", martinelli},
-        {"snow", density, "", 200.0, 400.0, "flowing snow", in_common_use},
+        {"snow", bed_mu, "voellmy", 0.15, 0.15, "large design avalanches", martinelli},
+        {"snow", bed_xi, "voellmy", 1200.0, 1600.0, "large design avalanches", martinelli},
+        {"snow", bed_xi, "voellmy", 700.0, 800.0, "hard slab, slow wet slab, soft slab through timber", martinelli},
+        {"snow", material_density, "", 200.0, 400.0, "flowing snow", in_common_use},
         {"snow", "erodible.energy", "", 5000.0, 5000.0, "default of com1DFA", "AvaFrame, configuration of com1DFA"},
-        {"debris_flow", mu, "", 0.03, 0.40, "back-analysed events", in_common_use},
-        {"debris_flow", xi, "voellmy", 100.0, 1000.0, "back-analysed events; granular ones lower, muddy ones higher",
-         in_common_use},
+        {"debris_flow", bed_mu, "", 0.03, 0.40, "back-analysed events", in_common_use},
+        {"debris_flow", bed_xi, "voellmy", 100.0, 1000.0,
+         "back-analysed events; granular ones lower, muddy ones higher", in_common_use},
         {"debris_flow", manning, "manning", 0.10, 0.18, "back-analysed events", in_common_use},
         {"debris_flow", yield, "", 500.0, 5000.0, "field estimates", in_common_use},
         {"debris_flow", viscosity, "", 10.0, 1000.0, "field estimates", in_common_use},
-        {"debris_flow", density, "", 1700.0, 2100.0, "flowing", in_common_use},
+        {"debris_flow", material_density, "", 1700.0, 2100.0, "flowing", in_common_use},
         {"debris_flow", "erodible.rate", "", 0.0125, 0.05, half_to_twice, frank},
         {"debris_flow", "erodible.threshold", "", 500.0, 2000.0, half_to_twice, frank},
         {"debris_flow", "erodible.depth_per_stress", "", 0.5e-4, 2e-4, half_to_twice, frank},
-        {"rock_avalanche", mu, "voellmy", 0.03, 0.35, "back-analysed events; on glaciers and wet ground lowest",
+        {"rock_avalanche", bed_mu, "voellmy", 0.03, 0.35, "back-analysed events; on glaciers and wet ground lowest",
          in_common_use},
-        {"rock_avalanche", xi, "voellmy", 100.0, 1000.0, "back-analysed events", in_common_use},
-        {"rock_avalanche", mu, "coulomb", 0.25, 0.58, "bulk friction, 14 to 30 degrees", in_common_use},
-        {"rock_avalanche", density, "", 1800.0, 2400.0, "broken rock", in_common_use},
+        {"rock_avalanche", bed_xi, "voellmy", 100.0, 1000.0, "back-analysed events", in_common_use},
+        {"rock_avalanche", bed_mu, "coulomb", 0.25, 0.58, "bulk friction, 14 to 30 degrees", in_common_use},
+        {"rock_avalanche", material_density, "", 1800.0, 2400.0, "broken rock", in_common_use},
         {"mud", yield, "", 0.54, 528.0, "13 samples at volume concentrations of 0.30 to 0.40", obrien},
         {"mud", viscosity, "", 0.042, 34.0, "13 samples at volume concentrations of 0.30 to 0.40", obrien},
         {"mud", yield, "", 20.0, 500.0, "mudflows; earth flows reach 10 000 Pa", in_common_use},
         {"mud", viscosity, "", 1.0, 100.0, "mudflows", in_common_use},
         {"mud", manning, "manning", 0.03, 0.06, "hyperconcentrated flows", in_common_use},
-        {"mud", density, "", 1300.0, 1900.0, "flowing", in_common_use},
+        {"mud", material_density, "", 1300.0, 1900.0, "flowing", in_common_use},
         {kFreeWater, water_manning, "", 0.008, 0.3, "channels and floodplains, from glass flumes to willows",
          in_common_use},
         {kFreeWater, water_manning, "", 0.1, 0.8, "sheet flow of centimetres through grass and woods", in_common_use},
@@ -89,7 +89,7 @@ const std::vector<ParameterRange>& parameter_ranges() {
 RangeKey range_key(const std::string& key) {
     const auto same = [](double value) { return value; };
     if (key == "material.bed.friction_angle_deg")
-        return {mu, [](double tangent) { return std::atan(tangent) * 180.0 / constants::kPi; }};
+        return {bed_mu, [](double tangent) { return std::atan(tangent) * 180.0 / constants::kPi; }};
     if (key == "material.bed.yield_stress") return {yield, same};
     if (key == "material.bed.viscosity") return {viscosity, same};
     return {key, same};
