@@ -12,6 +12,7 @@
 #include "frana_commands.h"
 #include "frana_compare.h"
 #include "frana_figures.h"
+#include "frana_wider_run.h"
 #include "run/folder/comparison.h"
 #include "run/folder/left_terrain.h"
 #include "run/folder/record_file.h"
@@ -186,6 +187,7 @@ RunAndSurvey read_run_and_survey(const CompareOptions& options) {
     require_rasters(options.run_dir, source.rasters);
     require_erodible(options, source.rasters);
     std::vector<std::string> said;  // of what the scores are made of: it belongs to them
+    widen_to_survey(source, files_of(options), said);
     const Survey survey =
         read_survey_files(files_of(options), find_product(source.rasters, "peak_depth")->raster, said);
     const std::optional<Raster> later = released_later(options, source, said);

@@ -34,7 +34,7 @@ void say_result(const fs::path& dir, const EnsembleSummary& summary) {
 
 /// As `frana check` has them.
 void say_remarks(const EnsembleRun& ensemble) {
-    for (const std::string& remark : ensemble.base().remarks) std::cout << "remark      " << remark << '\n';
+    for (const std::string& remark : ensemble.remarks_beforehand()) std::cout << "remark      " << remark << '\n';
 }
 
 /// The maps of all runs in the folder.

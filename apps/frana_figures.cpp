@@ -196,21 +196,12 @@ ProductRaster from_frame(const LoadedFrame& frame, const std::string& field, con
 
 /// The elevation model that the case names, where the run's rasters show it, for runs that wrote no VTK files.
 Raster bed_of_case(const fs::path& run_dir, const std::vector<ProductRaster>& rasters) {
-    const CaseFile run_case = case_of_run(run_dir);
-    DemRequest request;
-    if (run_case.has("terrain.window")) {
-        const auto& w = run_case.numbers("terrain.window");
-        request.window = {w[0], w[1], w[2], w[3]};
-    }
-    if (run_case.has("grid.cell")) request.cell = run_case.number("grid.cell");
-    request.choose = [&](const Raster& whole) {
+    return dem_of_case(case_of_run(run_dir), [&](const Raster& whole) {
         const NodeBox all = NodeBox::all(whole.geometry);
         if (rasters.empty()) return all;
         const auto shown = box_of(rasters.front().raster.geometry, whole.geometry);
         return shown && common(*shown, all) == *shown ? *shown : all;
-    };
-    std::vector<std::string> said_by_the_run;
-    return GdalReader().read_dem(run_case.path("terrain.dem"), request, said_by_the_run);
+    });
 }
 
 /// Where the run's files have the same nodes to round-off, the rasters' are taken.
@@ -286,6 +277,18 @@ void add_moment(const FigureSource& source, double time, std::list<ProductRaster
 CaseFile case_of_run(const fs::path& run_dir) {
     const fs::path file = run_dir / "resolved.toml";
     return CaseFile::parse(text_of(file), file);
+}
+
+Raster dem_of_case(const CaseFile& run_case, const std::function<NodeBox(const Raster& whole)>& choose) {
+    DemRequest request;
+    if (run_case.has("terrain.window")) {
+        const auto& w = run_case.numbers("terrain.window");
+        request.window = {w[0], w[1], w[2], w[3]};
+    }
+    if (run_case.has("grid.cell")) request.cell = run_case.number("grid.cell");
+    request.choose = choose;
+    std::vector<std::string> said_by_the_run;
+    return GdalReader().read_dem(run_case.path("terrain.dem"), request, said_by_the_run);
 }
 
 std::string title_of_run(const fs::path& run_dir) {

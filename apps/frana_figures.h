@@ -1,6 +1,7 @@
 #pragma once
 // A finished run read back for pictures and comparisons.
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ std::string title_of_run(const std::filesystem::path& run_dir);
 
 /// The case of the folder's resolved.toml; files that it names may have gone. UserError when it is not there.
 CaseFile case_of_run(const std::filesystem::path& run_dir);
+
+/// Of the elevation model that the case names, the nodes that `choose` wants of it. UserError when it has gone.
+Raster dem_of_case(const CaseFile& run_case, const std::function<NodeBox(const Raster& whole)>& choose);
 
 /// What became of its releases that were to enter later: names, and times of those that did. UserError without run.json.
 std::vector<LateEntry> late_of_run(const std::filesystem::path& run_dir);

@@ -153,6 +153,23 @@ TEST_CASE("converge remarks on a 3D grid that is the same on all cells", "[conve
     CHECK_THAT(said(""), !Contains("is the same on all cells"));
 }
 
+TEST_CASE("converge tells what its runs remark on their inputs: what all have once", "[converge]") {
+    const PlaneCase scene;
+    scene.write("[[inflow]]\nname = \"torrent\"\nline = [[60, 40], [60, 60]]\nvolume = 2000\nvelocity = 3\n");
+    REQUIRE(scene.frana("converge CASE --out study --cells 5,2.5").code == 0);
+    const Json record = json_in(scene.folder() / "study" / "converge.json");
+    std::vector<std::string> cut, finer;
+    for (const std::string remark : record["remarks"]) {
+        if (remark.find("what comes later does not come in") != std::string::npos) cut.push_back(remark);
+        if (remark.find("interpolated (cubic) to 2.5 m cells") != std::string::npos) finer.push_back(remark);
+    }
+    REQUIRE(cut.size() == 1);
+    CHECK(cut.front().rfind("inflow torrent: ", 0) == 0);
+    REQUIRE(finer.size() == 1);
+    CHECK(finer.front().rfind("found in cells of 2.5 m: ", 0) == 0);
+    CHECK_THAT(text_of(scene.folder() / "study" / "converge.md"), Contains(cut.front()));
+}
+
 TEST_CASE("converge varies particles a cell and the step on the finest cell, and says how far the answers lie apart",
           "[converge]") {
     const FreshFolder folder;

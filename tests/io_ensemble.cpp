@@ -345,7 +345,8 @@ TEST_CASE("runs that fail are counted and bound the maps, and stop no other", "[
     CHECK_THAT(done.err, Contains("the first one so: ") && Contains("gone.geojson"));
     CHECK_THAT(done.out, Contains("remark      dem.asc: no CRS"));
     CHECK_THAT(text_of(pond.path("many/report.md")),
-               Contains("\nRemarks on the case:\n\n- ") && Contains("\n- dem.asc: no CRS"));
+               Contains("\nRemarks on the case:\n\n- ") && Contains("\n- dem.asc: no CRS") &&
+                   Contains("\n\nThe first run that failed says: ") && Contains("gone.geojson"));
     const Json record = Json::parse(text_of(pond.path("many/ensemble.json")));
     CHECK_THAT(record["remarks"].dump(), Contains("\"dem.asc: no CRS"));
     CHECK_THAT(record["first_failure"].get<std::string>(), Contains("gone.geojson"));
@@ -375,6 +376,16 @@ TEST_CASE("runs that still move at time.end are told, whether or not they may st
     CHECK_THAT(done.out, Contains("2 still moved at time.end"));
     REQUIRE(plane.frana("ensemble many.toml --out many --resume").code == 0);
     CHECK(Json::parse(text_of(plane.folder() / "many/ensemble.json"))["not_at_rest"] == 2);
+}
+
+TEST_CASE("Runs without weight are not among those that still moved", "[ensemble]") {
+    const PlaneCase plane;
+    plane.write("[material.bed]\nlaw = \"coulomb\"\nmu = 0.05\n");
+    frana::write_text(plane.folder() / "rows.csv", "weight,material.bed.mu\n0,0.05\n1,3.0\n1,0.06\n");
+    frana::write_text(plane.folder() / "many.toml",
+                      "[ensemble]\ncase = \"case.toml\"\nmethod = \"table\"\ntable = \"rows.csv\"\n");
+    REQUIRE(plane.frana("ensemble many.toml --out many --quiet").code == 0);
+    CHECK(Json::parse(text_of(plane.folder() / "many/ensemble.json"))["not_at_rest"] == 1);
 }
 
 TEST_CASE("an ensemble replaces no files that no ensemble left, and no sample of another one", "[ensemble]") {
@@ -479,6 +490,24 @@ TEST_CASE("runs of a case with a survey say how near they come to it", "[ensembl
     // All of the pond is wet; surveyed are 25 x 55 m of its 60 x 60.
     CHECK_THAT(runs, Contains(fmt::format(",{:.9g}", 1375.0 / 3600.0).substr(0, 10)));
     CHECK_THAT(text_of(pond.path("many/report.md")), Contains("Nearest to the surveyed footprint"));
+}
+
+TEST_CASE("A run of an ensemble is as far from the survey, and reaches as far, as its comparison says", "[ensemble]") {
+    const PlaneCase plane;
+    frana::write_text(plane.folder() / "survey.geojson",
+                      R"({"type": "Polygon", "coordinates": [[[17, 28], [71, 33], [66, 72], [17, 66], [17, 28]]]})");
+    plane.write("[material.bed]\nlaw = \"coulomb\"\nmu = 0.05\n[survey]\nfootprint = \"survey.geojson\"\n");
+    frana::write_text(plane.folder() / "many.toml",
+                      "[ensemble]\ncase = \"case.toml\"\nmethod = \"grid\"\n[[ensemble.vary]]\nkey = "
+                      "\"material.bed.mu\"\ndistribution = \"discrete\"\nvalues = [0.05]\n");
+    REQUIRE(plane.frana("run CASE --out one --quiet").code == 0);
+    const Json one = Json::parse(text_of(plane.folder() / "one/compare.json"));
+    REQUIRE(plane.frana("ensemble many.toml --out many --quiet").code == 0);
+    const std::string runs = text_of(plane.folder() / "many/runs.csv");
+    const auto told = [&](const char* name) { return std::stod(column_of(runs, name).at(0)); };
+    CHECK(told("boundary_m") == Approx(one["boundary_distance_mean"].get<double>()).epsilon(1e-9));
+    CHECK(told("reach_m") == Approx(one["reach_simulated"].get<double>()).epsilon(1e-9));
+    CHECK(told("runout_m") == Approx(one["runout_simulated"].get<double>()).epsilon(1e-9));
 }
 
 TEST_CASE("What flowed is what was released and taken of the bed, once however often it became bed",

@@ -344,6 +344,7 @@ TEST_CASE("A run without weight reaches no place of an ensemble's page", "[ensem
     const auto reached = std::count_if(map.values.begin(), map.values.end(), [](double share) { return share > 0.0; });
     CHECK(reached > 0);
     CHECK(reached < 144);
+    CHECK_THAT(html, Contains("1 choices") && !Contains("2 choices"));
     CHECK(runs.at("ladders").at(0).at("probabilities").at("ny") == reached);
 }
 

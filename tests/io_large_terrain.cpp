@@ -1,7 +1,9 @@
 // Terrains that are much larger than the flow: what a run takes of memory, what it shows, and what it refuses.
+#include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -208,6 +210,52 @@ TEST_CASE("Rasters of a large terrain show where the flow was, on the terrain's 
     CHECK(call_frana(folder, "convert shown --spacing 1 --time 2 --out points.vtp").code == 0);
     const Outcome on = call_frana(folder, "run case.toml --quiet --out shown --resume");
     CHECK(on.code == 0);
+}
+
+// Rasters end near the flow. What lay beyond counted as outside of the terrain, and paths ended there.
+TEST_CASE("A survey beyond the rasters of a run on a part of the terrain is compared as on all of it",
+          "[terrain][compare]") {
+    const fs::path folder = large_terrain().path();
+    const auto geometry = [&](const std::string& name, const std::string& type, std::vector<std::array<double, 2>> way,
+                              const char* open, const char* close) {
+        std::string points;
+        for (const auto& [x, y] : way)
+            points +=
+                fmt::format("{}[{:.2f}, {:.2f}]", points.empty() ? "" : ", ", kWest + 15000 + x, kSouth + 15000 + y);
+        frana::write_text(folder / name,
+                          fmt::format(R"({{"type": "FeatureCollection", "crs": {{"type": "name", "properties": {{"name":
+                   "urn:ogc:def:crs:EPSG::32632"}}}}, "features": [{{"type": "Feature", "properties": {{}}, "geometry":
+                   {{"type": "{}", "coordinates": {}{}{}}}}}]}})",
+                                      type, open, points, close));
+    };
+    geometry("long.geojson", "Polygon", {{0, 0}, {40, 60}, {1800, -600}, {1700, -800}, {0, 0}}, "[[", "]]");
+    geometry("uphill.geojson", "LineString", {{1750, -700}, {25, 25}}, "[", "]");
+    // So large that a part of it is held: 512 nodes and more around the release are.
+    const std::string run = "run case.toml --quiet --overwrite --set terrain.window=[614500,5209000,623000,5215500] ";
+    REQUIRE(call_frana(folder, run + "--out near").code == 0);
+    REQUIRE(call_frana(folder, run + "--out all --set output.extent=terrain").code == 0);
+    const auto compared = [&](const std::string& name, const std::string& more) {
+        const Outcome done = call_frana(folder, "compare " + name + " --survey long.geojson" + more);
+        INFO(done.err);
+        REQUIRE(done.code == 0);
+        return nlohmann::json::parse(text_of(folder / name / "compare.json"));
+    };
+    for (const std::string path : {"", " --path uphill.geojson"}) {
+        CAPTURE(path);
+        const nlohmann::json near = compared("near", path), all = compared("all", path);
+        CHECK(all["survey_area_outside"] == 0.0);
+        for (const char* key : {"survey_area_outside", "runout_survey", "runout_simulated", "iou", "survey_area"}) {
+            CAPTURE(key);
+            CHECK(near[key].get<double>() == Approx(all[key].get<double>()).epsilon(1e-9));
+        }
+        CHECK_THAT(near["remarks"].dump(), !Contains("outside"));
+        if (!path.empty()) CHECK_THAT(near["remarks"].dump(), Contains("drawn uphill"));
+    }
+    std::string keys = text_of(folder / "near" / "resolved.toml");
+    frana::write_text(folder / "near" / "resolved.toml", keys.replace(keys.find("dem.tif"), 7, "gone.tif"));
+    const nlohmann::json near = compared("near", "");
+    CHECK(near["survey_area_outside"] > 0.0);
+    CHECK_THAT(near["remarks"].dump(), Contains("since the survey reaches beyond the run's rasters"));
 }
 
 TEST_CASE("The growth that check tells is that of the path over all of the terrain", "[terrain][erosion]") {

@@ -1,4 +1,5 @@
 // Surveys as a GIS has them: what is read, and what is refused with which sentence.
+#include <algorithm>
 #include <cmath>
 
 #include "base/atomic_file.h"
@@ -270,6 +271,39 @@ TEST_CASE("A surveyed deposit conserves its volume beyond the terrain, on the ru
         user_error([&] { GdalReader().read_deposit(files / "nowhere.tif", terrain, wkt_of("EPSG:32632"), log); });
     CHECK(contains(message, "has no CRS"));
     CHECK(is_one_sentence(message));
+}
+
+// Beyond the area of its CRS a raster lay 190 m elsewhere as a footprint than as a deposit, which GDAL warps.
+TEST_CASE("Footprint and deposit of a raster lie at one place, also beyond the area of their CRS", "[survey]") {
+    const Files files;
+    RasterSpec spec;
+    spec.columns = 40;
+    spec.rows = 20;
+    spec.transform = {2898030.0, 10.0, 0.0, 1241080.0, 0.0, -10.0};  // of Switzerland, at Innsbruck
+    spec.crs = "EPSG:2056";
+    spec.value = [](int, int) { return 1.0; };
+    make_raster(files / "swiss.tif", spec);
+    const GridGeometry grid{100, 80, 679700.0, 5235700.0, 10.0};
+    const std::string utm32 = wkt_of("EPSG:32632");
+    std::vector<std::string> log;
+    const Polygons footprint = GdalReader().read_survey(files / "swiss.tif", grid.pixel_extent(), utm32, log);
+    REQUIRE(footprint.parts.size() == 1);
+    const auto& ring = footprint.parts[0].rings[0];
+    double low = 1e9, high = -1e9, south = 1e9, north = -1e9;
+    for (const Vec2& corner : ring) {
+        low = std::min(low, corner.x()), high = std::max(high, corner.x());
+        south = std::min(south, corner.y()), north = std::max(north, corner.y());
+    }
+    const Raster deposit = GdalReader().read_deposit(files / "swiss.tif", grid, utm32, log);
+    Vec2 middle(0, 0);
+    double count = 0.0;
+    for (Index j = 0; j < deposit.geometry.ny; ++j)
+        for (Index i = 0; i < deposit.geometry.nx; ++i)
+            if (deposit.at(i, j) > 0.5) middle += Vec2(deposit.geometry.x(i), deposit.geometry.y(j)), count += 1.0;
+    REQUIRE(count > 0.0);
+    middle /= count;
+    CHECK(std::abs(middle.x() - 0.5 * (low + high)) < grid.cell);
+    CHECK(std::abs(middle.y() - 0.5 * (south + north)) < grid.cell);
 }
 
 TEST_CASE("A deposit is what lies at the end without free water, and that the rest counts it is said", "[survey]") {

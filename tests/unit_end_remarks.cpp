@@ -31,6 +31,13 @@ TEST_CASE("Of remarks on two things with numbers in their names each is told", "
     CHECK(all.front().sentence(3) == "in 2 of 3 runs, such as sample 0: gully 2: its 40 m3 did not enter");
 }
 
+TEST_CASE("A run with the same remark on two things is one run", "[ensemble]") {
+    RemarkTally tally;
+    tally.add(0, {{"the outline has no depth on 3 % of its area"}, {"the outline has no depth on 5 % of its area"}});
+    tally.add(1, {{"the outline has no depth on 4 % of its area"}});
+    CHECK(tally.sentences(2).front().rfind("in 2 of 2 runs", 0) == 0);
+}
+
 TEST_CASE("Energy that motion got by virtual mass is remarked on from a hundredth on") {
     struct : FakeSimulation {
         double drag = 0.0;

@@ -13,6 +13,7 @@
 #include "ensemble/vary_words.h"
 #include "fresh_folder.h"
 #include "growing_slide.h"
+#include "run/interrupt.h"
 #include "scene/bed_over.h"
 #include "scene/build_scene.h"
 #include "slope_case.h"
@@ -514,6 +515,26 @@ TEST_CASE("What varies is told with its distribution's numbers", "[ensemble]") {
           "discrete, 1 m with weight 0.75 (30 years), 2 m with weight 0.25 (100 years)");
 }
 
+TEST_CASE("Fields of a bed that no run changes are told", "[ensemble]") {
+    const FakeGis gis = frana::test::slope_gis();
+    const EnsembleFile file;
+    file.write(
+        "case.toml",
+        "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\nend = 20\n");
+    const auto told = [&](const std::string& key) {
+        const EnsemblePlan plan = file.read(
+            "[ensemble]\ncase = \"case.toml\"\nsamples = 2\nfields = [\"peak_depth\", "
+            "\"eroded_depth\"]\n[[ensemble.vary]]\nkey = \"" +
+            key + "\"\nrange = [1.0, 1.5]\n");
+        const std::vector<std::string> remarks = ensemble_base(plan, gis, {}).remarks;
+        return std::count_if(remarks.begin(), remarks.end(), [](const std::string& remark) {
+            return remark.find("found \"eroded_depth\"; expected a field of this case") != std::string::npos;
+        });
+    };
+    CHECK(told("release.0.depth") == 1);
+    CHECK(told("erodible.depth") == 0);
+}
+
 TEST_CASE("An ensemble has the remarks of its case, and those of a sample that are others", "[ensemble]") {
     const FakeGis gis = frana::test::slope_gis();
     const EnsembleFile file;
@@ -532,6 +553,13 @@ TEST_CASE("An ensemble has the remarks of its case, and those of a sample that a
     REQUIRE(others.size() == 1);
     CHECK_THAT(others[0], Contains("sample 0: ") && Contains("m3 are released"));
     CHECK(remarks_of_sample(plan_of("time.end", "range = [1.0, 1.5]"), base, 0, gis, {}).empty());
+    // Of every sample, among what its run says.
+    for (const Index sample : {Index{0}, Index{1}}) {
+        const auto result = run_sample(plan, base, sample, gis, {}, Interrupt());
+        REQUIRE(result);
+        CHECK(std::count_if(result->remarks.begin(), result->remarks.end(),
+                            [&](const EndRemark& remark) { return tells(remark.text); }) == 1);
+    }
     const EnsemblePlan refused =
         plan_of("release.0.outline", "distribution = \"discrete\"\nvalues = [\"gone.geojson\"]");
     CHECK(remarks_of_sample(refused, base, 0, gis, {}).empty());

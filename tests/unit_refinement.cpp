@@ -46,6 +46,8 @@ TEST_CASE("The share of a deposit that lies elsewhere is what would have to be m
     CHECK(share_elsewhere(slab(10, 0, 60, 1), slab(4, 0, 120, 0.5)) == exactly(0.5));
     CHECK(share_elsewhere(slab(10, 0, 60, 1), slab(4, 80, 120, 1)) == exactly(1.0));
     CHECK(std::isnan(share_elsewhere(slab(10, 0, 60, 0), slab(4, 80, 120, 1))));
+    // Half of a coarse pixel's depth, on all of it: half lies where the finest has none. Its own pixel would not see that.
+    CHECK(share_elsewhere(slab(10, 0, 10, 1), slab(2.5, 0, 5, 2)) == exactly(0.5));
     // A finer raster of a smaller window, shifted: what is not in it lies elsewhere.
     Raster window = slab(2.5, 0, 120, 1);
     window.geometry.x0 += 100.0;

@@ -21,11 +21,12 @@ public:
     std::function<double(double)> mean = [](double) { return 0.0; }, fastest = [](double) { return 1.0; };
     std::function<double(double, double)> share = [](double, double) { return 0.0; };  ///< of time, speed
     std::function<Index(double)> fronts = [](double) { return Index{0}; };
-    bool ready = true;
+    bool ready = true, water = false;
     mutable int looks = 0;
 
     void advance(double until) override {
         now_.time = std::min(until, now_.time + kStep), ++now_.step;
+        now_.max_depth = 60.0;
         now_.mean_speed = mean(now_.time), now_.max_speed = now_.max_speed_on_map = fastest(now_.time);
     }
     const Status& status() const override { return now_; }
@@ -35,7 +36,13 @@ public:
         return frame;
     }
     Status frame_status() override { return now_; }
+    void begin_with(double speed) { now_.max_speed = now_.max_speed_on_map = speed; }
     bool may_rest() const override { return ready; }
+    Extras extras() const override {
+        Extras extras;
+        if (water) extras.water.emplace();
+        return extras;
+    }
     MovingMass motion(const MotionQuery& query) const override {
         ++looks;
         return {1.0, share(now_.time, query.faster_than), now_.max_speed, fronts(query.since)};
@@ -120,6 +127,30 @@ TEST_CASE("Where nothing at all moves it is at rest at once", "[rest]") {
     Scripted flow = stops_at_40();
     flow.fastest = [](double t) { return t < 40.0 ? 1.0 : 0.0; };
     CHECK(rest_of(flow) == 40.0);
+}
+
+TEST_CASE("A lake that moves by round-off alone is at rest; material that creeps as slowly is not", "[rest][water]") {
+    // A lake of 60 m on cells of 1 m had 2e-14 m/s. The energy of a fall through the round-off of 60 m gives 5e-7 m/s.
+    for (const double speed : {2e-14, 4e-7, 6e-7}) {
+        CAPTURE(speed);
+        Scripted lake;
+        lake.begin_with(speed);
+        lake.mean = lake.fastest = [&](double) { return speed; };
+        lake.share = [&](double, double faster_than) { return speed > faster_than ? 1.0 : 0.0; };
+        const auto run_of = [&](Scripted flow, bool stop) {
+            Observers none;
+            std::ostringstream stream;
+            Progress progress(stream, Progress::Style::silent, 1.0);
+            return run(flow, {1.0, 1.0, stop, false, kCell, 0.05}, none, Interrupt(), progress);
+        };
+        CHECK(run_of(lake, true).reason == "end");
+        CHECK(run_of(lake, false).still_moves());
+        lake.water = true;
+        const bool rests = speed < 5e-7;
+        CHECK(run_of(lake, true).reason == (rests ? "rest" : "end"));
+        CHECK(run_of(lake, false).still_moves() == !rests);
+        CHECK((run_of(lake, false).motion.fastest == 0.0) == rests);
+    }
 }
 
 TEST_CASE("A rule that is taken up again sees rest at the same step", "[rest][resume]") {

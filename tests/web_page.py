@@ -133,7 +133,7 @@ def check_many():
     for ladder in page["ladders"]:
         places = [(round(ladder["x"] + ladder["cell"] * (n % ladder["nx"]), 3),
                    round(ladder["y"] + ladder["cell"] * (n // ladder["nx"]), 3)) for n in range(ladder["nx"] * ladder["ny"])]
-        for above in ladder["above"]:
+        for above, likelier in zip(ladder["above"], ladder["likelier"]):
             file = many / "rasters" / f"probability_{ladder['name']}_{above['threshold'] * units[ladder['unit']]:g}.tif"
             if not file.is_file():
                 continue
@@ -144,6 +144,9 @@ def check_many():
             # Runs weigh the same: the page holds whole numbers of them, rasters and page have float32.
             off = max(abs(shown[place] - 100 * p) for place, p in truth.items() if place in shown)
             expect(off < 1e-4, f"{file.name}: the page is off by {off} %")
+            # Likelier than not: half of the runs is not enough.
+            area = ladder["cell"] ** 2 * sum(p > 0.5 + 1e-6 for p in truth.values())
+            expect(abs(likelier - area) < 1e-6 * max(1, area), f"{file.name}: {likelier} m2 are likelier than not, not {area}")
             read += len(truth)
         for k, q in enumerate((0.05, 0.5, 0.95)):
             truth = raster(many / "rasters" / f"quantile_{ladder['name']}_{q:g}.tif")

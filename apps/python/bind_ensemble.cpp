@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "bindings.h"
+#include "io/band_words.h"
 #include "run/ensemble/ensemble_run.h"
 #include "waiting.h"
 
@@ -91,31 +92,21 @@ py::dict run_ensemble(EnsemblePlan plan, const std::string& dir, int threads, bo
     return found;
 }
 
-/// Of the field that a map's name tells of.
-std::pair<std::string, std::string> unit_and_meaning(const std::string& map) {
-    const auto begins = [&](const char* word) { return map.rfind(word, 0) == 0; };
-    const bool share = begins("probability_") || begins("first_order_") || begins("total_");
-    for (const PeakField& field : peak_fields())
-        if (map.find(std::string("_") + field.name) != std::string::npos)
-            return {share ? "1" : field.unit, field.meaning};
-    return {share ? "1" : "", ""};
-}
-
 py::tuple map_of_file(const std::string& file, const std::string& name) {
     const Raster raster = aside([&] {
         std::vector<std::string> log;
         const double far = 1e300;
         return GdalReader().read_raster(file, {-far, -far, far, far}, "", log);
     });
-    const auto [unit, meaning] = unit_and_meaning(name);
+    const auto [unit, meaning] = aside([&] { return band_words(file); });
     return py::make_tuple(name, unit, meaning, north_up(raster));
 }
 
 py::tuple probability(const std::string& dir, const std::string& field, double above) {
     const Raster raster =
         aside([&] { return EnsembleRun(read_ensemble(origin_of_ensemble(dir)), dir).probability(field, above); });
-    const auto [unit, meaning] = unit_and_meaning("probability_" + field);
-    return py::make_tuple("probability_" + field, unit, meaning, north_up(raster));
+    const std::string meaning = meaning_of_exceedance(peak_field(field), above);
+    return py::make_tuple("probability_" + field, "1", meaning, north_up(raster));
 }
 
 }  // namespace

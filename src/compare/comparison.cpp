@@ -8,12 +8,10 @@
 #include "base/error.h"
 #include "compare/flow_tracks.h"
 #include "compare/given_path.h"
+#include "compare/outline_step.h"
 
 namespace frana {
 namespace {
-
-/// Distances are taken four times a pixel, so the sampling is well below the pixels' own coarseness.
-constexpr double steps_per_cell = 4.0;
 
 class Comparing {
 public:
@@ -28,7 +26,7 @@ public:
         result_.bed_change_source = survey.bed_change_source;
         result_.limit = run.limit;
         result_.cell = run.peak_depth->geometry.cell;
-        step_ = result_.cell / steps_per_cell;
+        step_ = outline_step(result_.cell);
     }
 
     Comparison all() {

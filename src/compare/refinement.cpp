@@ -135,14 +135,14 @@ double footprints_iou(const Raster& depth, const Raster& finest, double limit) {
 }
 
 double share_elsewhere(const Raster& deposit, const Raster& finest) {
-    const double pixel = deposit.geometry.cell * deposit.geometry.cell;
-    const std::vector<double> there = volumes_on(deposit.geometry, finest);
+    const double pixel = deposit.geometry.cell * deposit.geometry.cell,
+                 fine_pixel = finest.geometry.cell * finest.geometry.cell;
     double all = 0.0, shared = 0.0;
-    for (std::size_t k = 0; k < there.size(); ++k) {
-        if (!(deposit.values[k] > 0.0)) continue;
-        all += deposit.values[k] * pixel;
-        shared += std::min(deposit.values[k] * pixel, there[k]);
-    }
+    for (const double depth : deposit.values)
+        if (depth > 0.0) all += depth * pixel;
+    const std::vector<double> here = volumes_on(finest.geometry, deposit);
+    for (std::size_t k = 0; k < here.size(); ++k)
+        if (finest.values[k] > 0.0) shared += std::min(here[k], finest.values[k] * fine_pixel);
     return all > 0.0 ? std::max(0.0, 1.0 - shared / all) : Raster::nodata;
 }
 

@@ -33,8 +33,8 @@ double covered_quantile(const Raster& values, const Raster& depth, double limit,
 /// Area in both footprints over the area in either. The pixels are overlaid as they lie; their grids need not agree.
 double footprints_iou(const Raster& depth, const Raster& finest, double limit);
 
-/// Share of a deposit's volume that would have to move to lie as the finest one does: 1 - sum of min / sum. It is
-/// taken in its own pixels, into which the finest deposit is summed exactly. NaN without a deposit.
+/// Share of a deposit's volume that would have to move to lie as the finest one does: 1 - sum of min / sum. Both are
+/// counted in the finest one's pixels, into which the deposit is summed exactly. NaN without a deposit.
 double share_elsewhere(const Raster& deposit, const Raster& finest);
 
 /// Order p of value = exact + constant cell^p through three cells, coarse to fine. Nothing where it has no meaning.

@@ -11,6 +11,7 @@
 #include "compare/deposit.h"
 #include "compare/flow_tracks.h"
 #include "compare/flow_width.h"
+#include "compare/outline_step.h"
 #include "compare/overlap.h"
 #include "compare/runout.h"
 #include "observe/budget.h"
@@ -95,10 +96,9 @@ std::vector<Vec2> middles_of_releases(const Scene& scene) {
     return release_middles(released);
 }
 
-/// Places where the flow begins. Of one release it is the particle nearest to its middle.
+/// Places where the flow begins, as a comparison of the run has them.
 std::vector<Vec2> starts_of(const Scene& scene) {
     std::vector<Vec2> starts = middles_of_releases(scene);
-    if (starts.size() == 1) starts.front() = *flow_start(scene);
     for (const Vec2& start : starts_of_what_comes_in(scene)) starts.push_back(start);
     return starts;
 }
@@ -131,7 +131,7 @@ void measure_extent(const EnsembleBase& base, const Scene& scene, const Raster& 
     const double cell = base.whole.cell;
     if (base.survey) {
         result.iou = overlap(depth, base.footprint_depth, *base.survey).iou();
-        if (!outline.empty()) result.boundary = distance_between(outline, *base.survey, cell).mean;
+        if (!outline.empty()) result.boundary = distance_between(outline, *base.survey, outline_step(cell)).mean;
     }
     if (outline.empty()) return;
     const Way way = way_of(scene, base, depth.geometry);
@@ -206,12 +206,36 @@ void run_scene(const EnsemblePlan& plan, const EnsembleBase& base, const Scene& 
     result.reason = run.reason, result.message = run.failure_text, result.still_moves = run.still_moves();
     result.time = run.last.time, result.steps = run.steps;
     result.gauges = gauges.peaks();
-    result.remarks = remarks_at_end(*simulation, run);
+    for (EndRemark& remark : remarks_at_end(*simulation, run)) result.remarks.push_back(std::move(remark));
     if (peaks.values.empty()) return;
     const Raster depth = ever_covered(peaks);
     remark_on_width(depth, base, *simulation, result);
     const std::optional<WaterBudget> water = simulation->extras().water;
     measure(scene, base, run, peaks, depth, water ? water->infiltrated_mass : 0.0, result);
+}
+
+/// Of what the scene was built from; those that the case makes too are told once, of the case.
+std::vector<std::string> remarks_on_inputs(const Scene& scene, const EnsembleBase& base) {
+    std::vector<std::string> remarks;
+    for (const std::string& remark : scene.log)
+        if (std::find(base.remarks.begin(), base.remarks.end(), remark) == base.remarks.end())
+            remarks.push_back(remark);
+    return remarks;
+}
+
+/// Of a bed that no run changes there is nothing to map. A key that varies may give one its bed.
+void remark_on_fields_of_bed(const EnsemblePlan& plan, const Scene& scene, EnsembleBase& base) {
+    const auto gives_bed = [](const Vary& vary) {
+        const auto of = [&](const char* table) { return vary.key.rfind(table, 0) == 0; };
+        return of("erodible.") || of("deposition.") || of("forest.");
+    };
+    if (scene.bed_changes() || std::any_of(plan.vary.begin(), plan.vary.end(), gives_bed)) return;
+    for (const std::string& field : plan.fields)
+        if (peak_field(field).of_bed)
+            base.remarks.push_back(
+                fmt::format("{}: ensemble.fields: found \"{}\"; expected a field of this case, since the bed does not "
+                            "change; its maps are 0 everywhere, so take it out",
+                            plan.file.string(), field));
 }
 
 }  // namespace
@@ -255,6 +279,7 @@ EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, co
     EnsembleBase base;
     base.remarks = scene.log;
     for (const std::string& remark : remarks_on_zones(plan, file)) base.remarks.push_back(remark);
+    remark_on_fields_of_bed(plan, scene, base);
     base.bed = scene.bed;
     base.whole = scene.wider ? scene.wider->grid : scene.bed.geometry;
     base.title = scene.title;
@@ -280,9 +305,8 @@ std::vector<std::string> remarks_of_sample(const EnsemblePlan& plan, const Ensem
                                            const GisReader& reader, const MeshReader& meshes) {
     std::vector<std::string> remarks;
     try {
-        for (const std::string& remark : scene_of(plan, plan.sets_of(sample), reader, meshes).log)
-            if (std::find(base.remarks.begin(), base.remarks.end(), remark) == base.remarks.end())
-                remarks.push_back(fmt::format("sample {}: {}", sample, remark));
+        for (const std::string& remark : remarks_on_inputs(scene_of(plan, plan.sets_of(sample), reader, meshes), base))
+            remarks.push_back(fmt::format("sample {}: {}", sample, remark));
     } catch (const UserError&) {  // its row in runs.csv says why
     }
     return remarks;
@@ -295,7 +319,9 @@ std::optional<SampleResult> run_sample(const EnsemblePlan& plan, const EnsembleB
     result.sample = sample;
     const auto start = std::chrono::steady_clock::now();
     try {
-        run_scene(plan, base, scene_of(plan, plan.sets_of(sample), reader, meshes), interrupt, std::move(also), result);
+        const Scene scene = scene_of(plan, plan.sets_of(sample), reader, meshes);
+        for (std::string& remark : remarks_on_inputs(scene, base)) result.remarks.push_back({std::move(remark)});
+        run_scene(plan, base, scene, interrupt, std::move(also), result);
     } catch (const UserError& error) {  // one run that cannot be is a result of the ensemble, and stops no other
         result.reason = "refused", result.message = error.what();
     } catch (const NumericsError& error) {

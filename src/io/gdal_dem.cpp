@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/pattern.h"
+#include "io/band_words.h"
 #include "io/gdal_crs.h"
 #include "io/gdal_onto.h"
 #include "io/gdal_reader.h"
@@ -139,6 +140,13 @@ std::function<Raster(const NodeBox&)> GdalReader::read_dem_later(const std::file
 std::string crs_of_raster(const std::filesystem::path& file) {
     std::vector<std::string> log;
     return gdal::horizontal_wkt(RasterFile(file, gdal::Meaning::any, log).crs());
+}
+
+std::pair<std::string, std::string> band_words(const std::filesystem::path& file) {
+    std::vector<std::string> log;
+    const RasterFile raster(file, gdal::Meaning::any, log);
+    const std::string words = raster.description();  // of the file follow on lines of their own
+    return {raster.unit(), words.substr(0, words.find('\n'))};
 }
 
 }  // namespace frana

@@ -9,6 +9,7 @@
 #include "io/gdal_crs.h"
 #include "io/gdal_onto.h"
 #include "io/gdal_reader.h"
+#include "io/gdal_transformation.h"
 #include "terrain/part_of.h"
 
 namespace frana {
@@ -39,9 +40,9 @@ void note_no_crs(const RasterFile& raster, const std::string& crs_wkt, std::vect
 }
 
 gdal::Transformation transformation(const RasterFile& raster, const OGRSpatialReference& from,
-                                    const OGRSpatialReference& to) {
+                                    const OGRSpatialReference& to, const std::array<double, 4>& extent) {
     const gdal::Messages messages;
-    gdal::Transformation made(OGRCreateCoordinateTransformation(&from, &to));
+    gdal::Transformation made = gdal::transformation(from, to, extent);
     if (!made)
         throw UserError(fmt::format("{}: cannot be brought from {} to {} ({}); reproject it with gdalwarp -t_srs",
                                     raster.file().string(), gdal::crs_name(from), gdal::crs_name(to),
@@ -53,7 +54,7 @@ gdal::Transformation transformation(const RasterFile& raster, const OGRSpatialRe
 class Source {
 public:
     Source(const RasterFile& raster, const OGRSpatialReference& target, const std::array<double, 4>& extent) {
-        const auto back = transformation(raster, target, raster.crs());
+        const auto back = transformation(raster, target, raster.crs(), extent);
         const gdal::Messages messages;
         double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
         if (!back->TransformBounds(extent[0], extent[1], extent[2], extent[3], &x0, &y0, &x1, &y1, 21))
@@ -102,7 +103,7 @@ private:
         return dataset;
     }
     void set_pixel_edge(const RasterFile& raster, const OGRSpatialReference& target, double x, double y) {
-        const auto forth = transformation(raster, raster.crs(), target);
+        const auto forth = transformation(raster, raster.crs(), target, raster.extent());
         double xs[] = {x, x + raster.x_axis().size, x}, ys[] = {y, y, y + raster.y_axis().size};
         if (!forth->Transform(3, xs, ys)) refuse_outside(raster, raster.extent(), raster.extent());
         edge_ = std::sqrt(std::abs((xs[1] - xs[0]) * (ys[2] - ys[0]) - (xs[2] - xs[0]) * (ys[1] - ys[0])));

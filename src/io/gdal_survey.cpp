@@ -13,6 +13,7 @@
 #include "io/gdal_onto.h"
 #include "io/gdal_reader.h"
 #include "io/gdal_shapes.h"
+#include "io/gdal_transformation.h"
 
 namespace frana {
 namespace {
@@ -152,7 +153,7 @@ Polygons from_mask(const fs::path& file, const std::string& crs_wkt, std::vector
         if (no_crs(&raster.crs())) refuse_crs(file, "has no CRS", terrain, "gdal_translate");
         if (!gdal::same_crs(raster.crs(), terrain)) {
             const gdal::Messages messages;
-            transformation.reset(OGRCreateCoordinateTransformation(&raster.crs(), &terrain));
+            transformation = gdal::transformation(raster.crs(), terrain, raster.extent());
             log.push_back(fmt::format("{}: reprojected from {} to {}", raster.name(), gdal::crs_name(raster.crs()),
                                       gdal::crs_name(terrain)));
         }
@@ -279,7 +280,7 @@ Raster GdalReader::read_deposit(const fs::path& file, const GridGeometry& grid, 
         if (no_crs(&raster.crs())) refuse_crs(file, "has no CRS", terrain, "gdal_translate");
         if (!gdal::same_crs(raster.crs(), terrain)) {
             const gdal::Messages messages;
-            const gdal::Transformation forth(OGRCreateCoordinateTransformation(&raster.crs(), &terrain));
+            const gdal::Transformation forth = gdal::transformation(raster.crs(), terrain, extent);
             const std::array<double, 4> e = extent;
             constexpr int points = 21;  // along each edge, which need not stay straight
             if (!forth ||

@@ -12,6 +12,7 @@
 #include "io/gdal_features.h"
 #include "io/gdal_reader.h"
 #include "io/gdal_shapes.h"
+#include "io/gdal_transformation.h"
 
 namespace frana {
 namespace {
@@ -64,7 +65,10 @@ gdal::Transformation to_terrain(Source& source, OGRLayer& layer) {
     OGRSpatialReference from(*declared);
     from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     const gdal::Messages messages;
-    gdal::Transformation made(OGRCreateCoordinateTransformation(&from, &*source.terrain));
+    gdal::Transformation made =
+        known
+            ? gdal::transformation(from, *source.terrain, {envelope.MinX, envelope.MinY, envelope.MaxX, envelope.MaxY})
+            : gdal::Transformation(OGRCreateCoordinateTransformation(&from, &*source.terrain));
     if (!made)
         throw UserError(
             fmt::format("{}: cannot be brought from {} to the terrain's {} ({}); reproject it with "

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <optional>
+#include <set>
 
 #include "observe/energy_made.h"
 #include "run/simulation.h"
@@ -120,13 +121,15 @@ std::string SharedRemark::sentence(Index of) const {
 }
 
 void RemarkTally::add(Index run, const std::vector<EndRemark>& remarks) {
+    std::set<std::size_t> of_this_run;
     for (const EndRemark& remark : remarks) {
         const auto [found, is_new] = number_.emplace(without_numbers(remark.text), kinds_.size());
         if (is_new) kinds_.push_back({remark.text, 1, run}), worst_.push_back(remark.worse);
+        const bool again = !of_this_run.insert(found->second).second;
         if (is_new) continue;
         SharedRemark& kind = kinds_[found->second];
         double& worst = worst_[found->second];
-        ++kind.runs;
+        if (!again) ++kind.runs;
         kind.differs = kind.differs || remark.worse != worst;
         if (remark.worse > worst) worst = remark.worse, kind.worst = run, kind.text = remark.text;
     }

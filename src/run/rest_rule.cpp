@@ -1,8 +1,12 @@
 #include "run/rest_rule.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
+#include "base/constants.h"
+#include "run/end_remarks.h"
+#include "run/round_off_speed.h"
 #include "run/simulation.h"
 
 namespace frana {
@@ -28,11 +32,20 @@ double mean_speed(const Status& now) {
 
 }  // namespace
 
+double round_off_speed(const Simulation& simulation) {
+    constexpr double round_off = std::numeric_limits<double>::epsilon();
+    const Status& now = simulation.status();
+    const double speed = std::sqrt(2.0 * constants::kGravity * round_off * now.max_depth);
+    // Extras of solids take long to find. They are not asked of anything faster.
+    return now.max_speed_on_map <= speed && of_water_alone(simulation.extras()) ? speed : 0.0;
+}
+
 void RestRule::note(const Simulation& simulation) {
     const Status& now = simulation.status();
     peak_mean_speed_ = std::max(peak_mean_speed_, mean_speed(now));
     const bool may_rest = simulation.may_rest();
-    nothing_moves_ = may_rest && now.max_speed_on_map == 0.0;
+    const bool still = now.max_speed_on_map == 0.0 || now.max_speed_on_map <= round_off_speed(simulation);
+    nothing_moves_ = may_rest && still;
     if (now.time < next_check_) return;
     next_check_ = (1.0 + kCheck) * now.time;
     if (!may_rest || !is_at_rest(simulation)) calm_since_ = now.time;

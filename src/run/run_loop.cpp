@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "run/memory_state.h"
+#include "run/round_off_speed.h"
 #include "run/simulation.h"
 
 namespace frana {
@@ -132,7 +133,10 @@ RunSummary Loop::run() {
         // Early on that is faster than anything moves. What was cut short then still moves.
         if (summary_.time_is_over())
             summary_.slow = std::min(summary_.slow, plan_.rest_fraction * summary_.extremes.max_speed);
+        const double still = round_off_speed(simulation_);  // the largest speed may be round-off as well
+        summary_.slow = std::max(summary_.slow, still);
         summary_.motion = simulation_.motion({summary_.slow, simulation_.status().time});
+        if (summary_.motion.fastest <= still) summary_.motion.fastest = 0.0;
         save_state();
         show_end();
     } catch (const Refusal& refusal) {

@@ -99,6 +99,7 @@ class Maps(InEnsemble):
             self.assertEqual(tuple(share.transform)[:6], (CELL, 0, WEST, 0, -CELL, NORTH))
             self.assertIn('"WGS 84 / UTM zone 32N"', share.crs)
             self.assertEqual((share.unit, share.name), ("1", f"probability_peak_depth_{above}"))
+            self.assertEqual(share.description, f"share of the runs with peak depth above {above} m")
             counted = sum(peak.array > above for peak in peaks) / 6
             numpy.testing.assert_allclose(numpy.nan_to_num(share.array), counted, atol=1e-7)  # files hold float32
             self.assertGreater(counted.max(), 0.5)
@@ -107,6 +108,9 @@ class Maps(InEnsemble):
         self.assertEqual(many.record["run"], 6)
         with self.assertRaisesRegex(frana.DataError, "found no peak_height"):
             many.probability("peak_height", above=1.0)
+        for below in (-1.0, float("nan"), float("inf")):
+            with self.assertRaisesRegex(frana.DataError, "expected a number from 0 on"):
+                many.probability("peak_speed", above=below)
         with self.assertRaisesRegex(frana.DataError, "footprint_depth"):
             many.probability("peak_depth", above=0.01)
         with self.assertRaisesRegex(KeyError, "probability_reached"):

@@ -3,10 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "base/error.h"
 #include "io/gdal_reader.h"
+#include "run/end_remarks.h"
 #include "run/folder/checkpoint.h"
 #include "run/folder/record_file.h"
 #include "run/folder/run_folder.h"
@@ -116,6 +118,27 @@ std::vector<std::string> same_on_all(const CaseFile& file) {
     return remarks;
 }
 
+/// What building the runs' cases remarked. What all have word for word is told once, the rest with one of its runs.
+std::vector<std::string> remarks_on_inputs(const std::vector<PlannedRun>& runs,
+                                           const std::vector<std::vector<std::string>>& logs) {
+    RemarkTally tally;
+    std::map<std::string, std::size_t> alike;
+    for (std::size_t k = 0; k < logs.size(); ++k) {
+        std::vector<EndRemark> remarks;
+        for (const std::string& text : logs[k]) remarks.push_back({text}), ++alike[text];
+        tally.add(static_cast<Index>(k), remarks);
+    }
+    std::vector<std::string> lines;
+    for (const SharedRemark& remark : tally.all()) {
+        const std::string& name = runs[static_cast<std::size_t>(remark.worst)].name;
+        const std::string which =
+            remark.runs == 1 ? name : fmt::format("{} of {} runs, such as {}", remark.runs, runs.size(), name);
+        lines.push_back(alike[remark.text] == runs.size() ? remark.text
+                                                          : fmt::format("found in {}: {}", which, remark.text));
+    }
+    return lines;
+}
+
 std::string overrides(const std::vector<std::string>& sets) {
     std::string text;
     for (const std::string& set : sets) text += fmt::format("{}--set {}", text.empty() ? "" : " ", set);
@@ -143,6 +166,7 @@ StudyRun::StudyRun(StudyWishes wishes) : wishes_(std::move(wishes)) {
 }
 
 void StudyRun::check_scenes() {
+    std::vector<std::vector<std::string>> logs;
     for (const PlannedRun& run : runs_) {
         const CaseFile file = CaseFile::read(wishes_.case_file, run.wishes.sets);
         if (!run.finished && !run.wishes.resume)
@@ -150,7 +174,9 @@ void StudyRun::check_scenes() {
         Scene scene = build_scene(file, GdalReader(), barrier_mesh_of);
         if (run.finished) open_checkpoint(run.wishes.out, checkpoint_labels(scene, file));
         bed_ = std::move(scene.bed), wider_ = std::move(scene.wider);
+        logs.push_back(std::move(scene.log));
     }
+    for (std::string& remark : remarks_on_inputs(runs_, logs)) remarks_.push_back(std::move(remark));
 }
 
 /// The finest run's terrain, as far as its rasters go.

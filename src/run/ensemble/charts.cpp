@@ -119,7 +119,9 @@ void draw_scatter(const Charts& of) {
     figure.x_label = "share of the key's distribution below the run's value [1]";
     figure.x_range = {0.0, 1.0};
     constexpr std::size_t at_most = 4;  // panels that can still be read
-    for (std::size_t k = 0; k < std::min(at_most, of.plan.vary.size()); ++k) {
+    const std::size_t keys = of.plan.vary.size(), shown = std::min(at_most, keys);
+    if (shown < keys) figure.title += fmt::format(" (the first {} of {} keys)", shown, keys);
+    for (std::size_t k = 0; k < shown; ++k) {
         Curve curve;
         curve.name = of.plan.vary[k].key;
         curve.marks = true;

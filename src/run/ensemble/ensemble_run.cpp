@@ -64,9 +64,13 @@ EnsembleRun::EnsembleRun(EnsemblePlan plan, fs::path dir)
       dir_(std::move(dir)),
       reader_(files_),
       meshes_(meshes_in_turn()),
-      base_(ensemble_base(plan_, reader_, meshes_)) {
+      base_(ensemble_base(plan_, reader_, meshes_)) {}
+
+std::vector<std::string> EnsembleRun::remarks_beforehand() const {
+    std::vector<std::string> remarks = base_.remarks;
     for (std::string& remark : remarks_of_sample(plan_, base_, 0, reader_, meshes_))
-        base_.remarks.push_back(std::move(remark));
+        remarks.push_back(std::move(remark));
+    return remarks;
 }
 
 std::vector<Index> EnsembleRun::left_to_run(const Shard& shard, bool resume) const {

@@ -34,6 +34,9 @@ public:
     const EnsembleBase& base() const { return base_; }
     const std::filesystem::path& folder() const { return dir_; }
 
+    /// Those on the case, and on the first sample. What other samples are told is among the results.
+    std::vector<std::string> remarks_beforehand() const;
+
     /// Those of the shard that no shard in the folder has run; what was refused is tried again. Throws UserError where the
     /// shard has run before, unless it is to go on. So too where an ensemble has no room.
     std::vector<Index> left_to_run(const Shard& shard, bool resume) const;
@@ -60,7 +63,7 @@ private:
     GdalReader files_;
     SharedReader reader_;
     MeshReader meshes_;
-    EnsembleBase base_;  ///< its remarks are those of the first sample too
+    EnsembleBase base_;
 };
 
 }  // namespace frana

@@ -139,8 +139,7 @@ private:
 
     void write_exceedance(const PeakField& field, double threshold, const PixelValues& pixels) {
         const std::string name = fmt::format("probability_{}_{:g}", field.name, threshold);
-        const std::string meaning =
-            fmt::format("share of the runs with {} above {:g} {}", field.meaning, threshold, field.unit);
+        const std::string meaning = meaning_of_exceedance(field, threshold);
         const Raster p = pixels.exceeds(threshold);
         raster(name, p, "1", meaning);
         probabilities_.push_back({name, "1", p.values});
@@ -244,9 +243,10 @@ EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const 
     summary.samples = plan.samples, summary.run = static_cast<Index>(results.size());
     summary.wall_seconds = wall_seconds;
     for (const SampleResult& result : results) {
+        const bool counts = plan.points[static_cast<std::size_t>(result.sample)].weight > 0.0;  // in the maps
         summary.failed += !result.ended();
-        summary.not_at_rest += result.still_moves;
-        summary.left_terrain += result.left_terrain();
+        summary.not_at_rest += counts && result.still_moves;
+        summary.left_terrain += counts && result.left_terrain();
         summary.core_seconds += result.seconds;
         summary.remarks.add(result.sample, result.remarks);
     }
@@ -270,14 +270,24 @@ EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const 
     return summary;
 }
 
+std::string meaning_of_exceedance(const PeakField& field, double threshold) {
+    return fmt::format("share of the runs with {} above {:g} {}", field.meaning, threshold, field.unit);
+}
+
 Raster probability_map(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBase& base, const KeptResults& kept,
                        const std::string& field, double threshold) {
     const auto found = std::find(plan.fields.begin(), plan.fields.end(), field);
-    if (found == plan.fields.end() || peak_field(field).is_time)
+    if (found == plan.fields.end() || peak_field(field).is_time) {
+        std::vector<std::string> fields = plan.fields;
+        fields.erase(std::remove(fields.begin(), fields.end(), "arrival_time"), fields.end());
         throw UserError(
-            fmt::format("{}: found no {} of its runs; expected a field of ensemble.fields but arrival_time: {}; "
-                        "add it there and run the ensemble again",
-                        dir.string(), field, fmt::join(plan.fields, ", ")));
+            fmt::format("{}: found no {} of its runs that could be exceeded; expected one of {}; add it to "
+                        "ensemble.fields and run the ensemble again",
+                        dir.string(), field, fmt::join(fields, ", ")));
+    }
+    if (!(threshold >= 0.0 && std::isfinite(threshold)))
+        throw UserError(fmt::format("above: found {:g}; expected a number from 0 on; give one in {}", threshold,
+                                    peak_field(field).unit));
     if (!(threshold >= base.footprint_depth || field != "peak_depth"))
         throw UserError(
             fmt::format("above: found {:g} m of peak_depth; expected at least output.footprint_depth, {:g} m, "

@@ -43,6 +43,9 @@ struct EnsembleSummary {
 EnsembleSummary write_maps(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
                            const KeptResults& kept, std::optional<double> wall_seconds);
 
+/// "share of the runs with peak flow depth above 0.5 m".
+std::string meaning_of_exceedance(const PeakField& field, double threshold);
+
 /// What rasters/probability_FIELD_THRESHOLD.tif holds or would hold, in double precision. Throws
 /// UserError where no run has an answer, or the ensemble stores no such field.
 Raster probability_map(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,

@@ -202,7 +202,11 @@ std::string gauges_note(const EnsembleBase& base, const WeightedRuns& runs) {
 
 std::string page_of(const EnsemblePlan& plan, const EnsembleBase& base, const EnsembleSummary& summary,
                     const WeightedRuns& runs, const std::vector<SampleResult>& results) {
-    std::string page = fmt::format("# {}: many runs\n\n{}\n\n| | mean |", base.title, runs_sentence(summary));
+    std::string page = fmt::format("# {}: many runs\n\n{}", base.title, runs_sentence(summary));
+    if (summary.failed > 0)
+        page += fmt::format("\n\nThe first run that failed says: {}. The reasons of all are in `runs.csv`.",
+                            summary.first_failure);
+    page += "\n\n| | mean |";
     for (const double q : plan.quantiles) page += fmt::format(" {:g} % of the runs stay below |", 100.0 * q);
     page += "\n|---|---:|";
     for (std::size_t k = 0; k < plan.quantiles.size(); ++k) page += "---:|";

@@ -172,6 +172,7 @@ private:
     std::string range_of(std::size_t key) const {
         double low = INFINITY, high = -INFINITY;
         for (const SamplePoint& point : plan_.points) {
+            if (!(point.weight > 0.0)) continue;  // in none of the maps
             const std::string& text = point.values[key];
             const std::optional<double> number = number_in(text);
             if (!number) return choices_of(key);
@@ -187,7 +188,8 @@ private:
 
     std::string choices_of(std::size_t key) const {
         std::set<std::string> values;
-        for (const SamplePoint& point : plan_.points) values.insert(point.values[key]);
+        for (const SamplePoint& point : plan_.points)
+            if (point.weight > 0.0) values.insert(point.values[key]);
         return fmt::format("{} choices", values.size());
     }
 

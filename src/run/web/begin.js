@@ -77,7 +77,7 @@ async function checkRuns() {
     }
     const place = n => [x + cell * (n % nx), y + cell * Math.floor(n / nx)];
     const quantiles = Array.from(ladder.rows, (row, n) => row < 0 ? null : ladder.quantilesAt(...place(n)));
-    told.push({name, unit, thresholds, nx, ny, x: data.origin[0] + x, y: data.origin[1] + y, cell, above, quantiles});
+    told.push({name, unit, thresholds, nx, ny, x: data.origin[0] + x, y: data.origin[1] + y, cell, above, quantiles, likelier: ladder.areas(0.5)});
   }
   return {ladders: told, effective: data.runs.effective, wilson: [0, 0.3, 1].map(p => wilson(p, data.runs.effective))};
 }

@@ -34,10 +34,10 @@ class Ladder {
     return row >= 0 ? Array.from(table.subarray(row * width, (row + 1) * width)) : [];
   }
 
-  /** Area [m2] where more than each threshold has a probability of `share` or more. */
+  /** Area [m2] where more than each threshold has a probability above `share`. What is equal to it may be a rounding error off. */
   areas(share) {
     const width = this.thresholds.length, areas = new Array(width).fill(0), pixel = this.reached.cell ** 2;
-    this.probabilities.forEach((probability, n) => { if (probability >= share - 1e-6) areas[n % width] += pixel; });
+    this.probabilities.forEach((probability, n) => { if (probability > share + 1e-6) areas[n % width] += pixel; });
     return areas;
   }
 }
