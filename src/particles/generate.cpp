@@ -226,8 +226,8 @@ std::string conservation_table(const std::vector<ReleaseReport>& reports) {
     ReleaseReport sum;
     for (std::size_t r = 0; r < reports.size(); ++r) {
         const ReleaseReport& one = reports[r];
-        text += fmt::format("{:<8} {:>10} {:>14.6g} {:>16.9g} {:>16.9g} {:>9.1e} {:>12.5g}\n", r, one.count,
-                            one.area, one.volume, one.particle_volume, one.relative_error, one.spacing);
+        text += fmt::format("{:<8} {:>10} {:>14.6g} {:>16.9g} {:>16.9g} {:>9.1e} {:>12.5g}\n", r, one.count, one.area,
+                            one.volume, one.particle_volume, one.relative_error, one.spacing);
         sum.count += one.count;
         sum.area += one.area;
         sum.volume += one.volume;
