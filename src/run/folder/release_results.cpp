@@ -136,8 +136,8 @@ ReleasePlan plan_of_mask(const std::string& file, const std::array<double, 4>& e
     for (std::size_t k = 0; k < marks.size(); ++k) marks[k] = mask.values[k] > 0.0 ? 1 : 0;
     const auto count = std::count(marks.begin(), marks.end(), 1);
     ReleasePlan plan{{}, static_cast<double>(count) * mask.geometry.cell * mask.geometry.cell};
-    for (const AttributedShape& outline : pixel_outlines(mask.geometry, std::move(marks)))
-        plan.parts.parts.push_back(std::get<Polygon>(outline.shape));
+    const auto outlines = pixel_outlines(mask.geometry, std::move(marks));
+    for (const AttributedShape& outline : outlines) plan.parts.parts.push_back(std::get<Polygon>(outline.shape));
     return plan;
 }
 
