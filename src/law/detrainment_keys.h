@@ -8,11 +8,11 @@
 namespace frana::laws {
 
 inline std::vector<Key<Detrainment>> detrainment_keys() {
-    return {{&Detrainment::max_speed, "max_speed", "m/s", ranges::positive,
-             "along the bed, above which nothing is lost: more than the 0.1 m/s below which nothing is lost either",
-             Missing::none},
-            {&Detrainment::max_depth, "max_depth", "m", ranges::positive, "of the flow, above which nothing is lost",
-             Missing::none}};
+    return {
+        {&Detrainment::max_speed, "max_speed", "m/s", ranges::positive,
+         "along the bed, above which nothing is lost; above 0.1 m/s, since slower flow loses nothing", Missing::none},
+        {&Detrainment::max_depth, "max_depth", "m", ranges::positive, "of the flow, above which nothing is lost",
+         Missing::none}};
 }
 
 }  // namespace frana::laws
