@@ -171,6 +171,8 @@ TEST_CASE("A slab that slides becomes 3D and particles again without a change of
     stage.window = {0, 0, 80, 20};
     stage.cell = 0.5, stage.spacing = 0.25;
     stage.law = solid::DruckerPrager::of({}, std::atan(mu), 0.0);
+    if (std::holds_alternative<bed::Pouliquen>(scene.bed_law))  // as the case has it
+        stage.law = solid::MuI{{}, mu, 0.6, 0.3, 0.05, 0.6};
     stage.of_bed = true, stage.whole_bed_law = !coulomb;
     stage.transfer = Transfer::flip, stage.blending = std::sqrt(stage.cell / scene.gravity);
     stage.bed_friction = mu;

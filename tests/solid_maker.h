@@ -29,8 +29,12 @@ inline SolidScene kept(SolidScene s) {
 
 inline std::vector<SolidLaw> all_solid_laws() {
     const solid::Elastic elastic = solid::Elastic::of(4e5, 0.3);
-    return {solid::Fluid{4e5, 1.0}, solid::Bingham{4e5, 1e5, 10.0, 500.0}, elastic,
-            solid::DruckerPrager::of(elastic, 0.5, 100.0), solid::HerschelBulkley{4e5, 1e5, 20.0, 0.5, 500.0}};
+    return {solid::Fluid{4e5, 1.0},
+            solid::Bingham{4e5, 1e5, 10.0, 500.0},
+            elastic,
+            solid::DruckerPrager::of(elastic, 0.5, 100.0),
+            solid::HerschelBulkley{4e5, 1e5, 20.0, 0.5, 500.0},
+            solid::MuI{elastic, 0.4, 0.7, 0.3, 0.02, 0.6, 1000.0}};
 }
 
 }  // namespace frana

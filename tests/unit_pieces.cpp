@@ -1,5 +1,6 @@
 // What 3D material has come apart into: exact answers.
 #include <omp.h>
+#include <algorithm>
 
 #include "catch.h"
 #include "solid3d/mpm3d.h"
@@ -104,11 +105,11 @@ TEST_CASE("Splitting conserves mass, momentum and its ledger, with the same bits
             const double mass = flow.status().mass;
             const Index before = flow.status().points;
             for (int n = 0; n < 220; ++n) flow.advance(1e9);
-            CHECK(flow.status().points > before);
             CHECK(flow.status().points == flow.body().points.count());
             CHECK(flow.status().mass + flow.status().mass_left == Approx(mass).epsilon(1e-13));
             CHECK(flow.momentum_residual().norm() < 1e-12 * flow.status().weight_impulse.norm());
             const auto& q = flow.body().points;
+            CHECK(*std::max_element(q.id.begin(), q.id.end()) >= before);  // halves were born; others may have left
             heights.emplace_back(q.x[2].begin(), q.x[2].end());
         }
         omp_set_num_threads(threads);

@@ -93,9 +93,42 @@ TEST_CASE("Sand that flew far apart carries pressure again once it is pressed", 
         return -law.stress(j, state, Mat3::Zero()).trace() / 3.0;
     };
     for (int step = 0; step < 2000; ++step) REQUIRE(stretch(2.0) == 0.0);  // 2^2000 is no number
-    CHECK(j == law.kLoosest);
-    CHECK(stretch(1.01 / law.kLoosest) == 0.0);
+    CHECK(j == solid::kLoosest);
+    CHECK(stretch(1.01 / solid::kLoosest) == 0.0);
     CHECK(stretch(0.99 / 1.01) > 0.0);
+}
+
+TEST_CASE("Grains under mu(I) are sheared at Jop's friction, and rest within it", "[solid]") {
+    const double rate = GENERATE(0.01, 1.0, 100.0), p = GENERATE(10.0, 1e4);
+    CAPTURE(rate, p);
+    const solid::MuI law{solid::Elastic::of(1e7, 0.3), 0.38, 0.65, 0.3, 0.01, 0.6, 1600.0};
+    const double strain = -p / law.elastic.bulk() / 3.0;
+    double state[7] = {strain, strain, strain}, j = std::exp(3.0 * strain);
+    Deformation shear{Mat3::Zero(), 1e-3 / rate};
+    shear.gradient(0, 2) = rate;
+    for (int step = 0; step < 100; ++step) law.update(shear, j, state);
+    const double i = rate * 0.01 * std::sqrt(1600.0 / 0.6 / p), mu = 0.38 + 0.27 / (1.0 + 0.3 / i);
+    const Sym3 stress = law.stress(j, state, Mat3::Zero());
+    CHECK(-stress.trace() / 3.0 == Approx(p).epsilon(1e-9));
+    // The spin turns the elastic strain by mu p / G each way: a term of that square. Strains of 1e-6 have ten digits.
+    const double turned = mu * p / law.elastic.shear;
+    CHECK(stress.deviator().norm() / std::sqrt(2.0) == Approx(mu * p).epsilon(turned * turned + 1e-7));
+    // Half of mu_s is carried without flow.
+    double resting[7] = {strain, strain, strain, 0.0, 0.0, 0.19 * p / (2.0 * law.elastic.shear), 0.0}, other = j;
+    law.update({Mat3::Zero(), 1e-3}, other, resting);
+    CHECK(resting[5] == Approx(0.19 * p / (2.0 * law.elastic.shear)).epsilon(1e-12));
+}
+
+TEST_CASE("mu(I) with the same friction at any rate is sand as strong in simple shear", "[solid]") {
+    const double phi = 0.5, mu = std::tan(phi);
+    const auto sand = solid::DruckerPrager::of(solid::Elastic::of(1e6, 0.3), phi, 0.0, solid::Cone::simple_shear);
+    const solid::MuI grains{solid::Elastic::of(1e6, 0.3), mu, mu, 0.3, 0.01, 0.6, 1600.0};
+    double a[7] = {-1e-3, -1e-3, -1e-3}, b[7] = {-1e-3, -1e-3, -1e-3}, ja = 1.0, jb = 1.0;
+    Deformation d{Mat3::Zero(), 1e-3};
+    d.gradient << -0.2, 0.9, 0.1, -0.1, 0.1, 0.2, 0.4, 0.0, -0.1;
+    for (int step = 0; step < 50; ++step) sand.update(d, ja, a), grains.update(d, jb, b);
+    CHECK(sand.stress(ja, a, Mat3::Zero()).deviator().norm() > 0.0);
+    for (int k = 0; k < 7; ++k) CHECK(b[k] == Approx(a[k]).epsilon(1e-12).margin(1e-18));
 }
 
 TEST_CASE("Bingham's stress below the yield stress is elastic; sheared on, it goes to tau_Y + mu rate", "[solid]") {
@@ -153,6 +186,7 @@ TEST_CASE("What a law stores is the work done on it, as long as nothing flows", 
     check(solid::HerschelBulkley{1e6, 1e5, 50.0, 0.5, 1e9});
     check(solid::Elastic::of(1e6, 0.3));
     check(solid::DruckerPrager::of(solid::Elastic::of(1e6, 0.3), 0.5, 1e9));
+    check(solid::MuI{solid::Elastic::of(1e6, 0.3), 1e9, 2e9, 0.3, 0.01, 0.6, 1600.0});
 }
 
 TEST_CASE("A fluid's pressure follows its volume and is never a tension", "[solid]") {

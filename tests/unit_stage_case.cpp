@@ -201,7 +201,42 @@ TEST_CASE("Sand is as strong as its angle says in triaxial compression, or by ch
     };
     CHECK(alpha("") == Approx(std::sqrt(2.0 / 3.0) * 6.0 * 0.5 / 2.5).epsilon(1e-12));
     CHECK(alpha("cone = \"plane_strain\"\n") == Approx(std::sqrt(2.0) * 0.5).epsilon(1e-12));
+    CHECK(alpha("cone = \"simple_shear\"\n") ==
+          Approx(std::sqrt(2.0) * std::tan(30.0 * constants::kPi / 180.0)).epsilon(1e-12));
     CHECK(has(problem_of(two + west + "cone = \"plane_strain\"\n"), "stage.1.cone: found, but"));
+}
+
+TEST_CASE("Grains have the mu(I) of their stage, else of the bed", "[case]") {
+    const std::string grains = two + west + "law = \"mu_i\"\nyoung_modulus = 1e6\n";
+    CHECK(has(problem_of(grains), "found \"mu_i\" without stage.mu_s, stage.mu_2, stage.grain_diameter"));
+    const std::string own = grains + "mu_s = 0.4\nmu_2 = 0.7\ngrain_diameter = 0.02\n";
+    const SolidStage stage = scene_of(own).solid.value();
+    const auto law = std::get<solid::MuI>(stage.law);
+    CHECK(law.mu_s == 0.4);
+    CHECK(law.mu_2 == 0.7);
+    CHECK(law.i0 == 0.3);
+    CHECK(law.grain_diameter == 0.02);
+    CHECK(law.solid_fraction == 0.6);
+    CHECK(stage.transfer == Transfer::flip);
+    CHECK(has(problem_of(grains + "mu_s = 0.4\nmu_2 = 0.4\ngrain_diameter = 0.02\n"),
+              "found mu_2 = 0.4 with mu_s = 0.4; expected mu_2 above mu_s"));
+    const auto of = [](const std::string& more) {
+        std::string text = text_of(two + west + more);
+        const std::string coulomb = "mu = 0.2";
+        const std::size_t law_at = text.find("law = \"voellmy\"");
+        REQUIRE(law_at != std::string::npos);
+        text.replace(law_at, 15, "law = \"pouliquen\"");
+        text.replace(text.find(coulomb), coulomb.size(), "mu_s = 0.3\nmu_2 = 0.6\ni0 = 0.2\ngrain_diameter = 0.05");
+        text.erase(text.find("xi = "), text.find('\n', text.find("xi = ")) - text.find("xi = "));
+        return build_scene(CaseFile::parse(text, "slide/case.toml"), walled_gis()).solid.value();
+    };
+    const SolidStage by_bed = of("");
+    CHECK(by_bed.of_bed);
+    CHECK(std::get<solid::MuI>(by_bed.law).mu_2 == 0.6);
+    CHECK(std::get<solid::MuI>(by_bed.law).i0 == 0.2);
+    CHECK(std::get<solid::MuI>(of("law = \"mu_i\"\nyoung_modulus = 1e6\nmu_s = 0.25\n").law).mu_s == 0.25);
+    CHECK(std::get<solid::MuI>(of("law = \"mu_i\"\nyoung_modulus = 1e6\n").law).grain_diameter == 0.05);
+    CHECK(std::holds_alternative<solid::DruckerPrager>(of("bed_friction = 0.5\n").law));
 }
 
 TEST_CASE("Cohesion without an angle of friction has no cone, and is refused by its key", "[case]") {
@@ -217,6 +252,10 @@ TEST_CASE("Sand retains its velocities unless it is told not to, fluids do not",
     const std::string sand = two + west + "law = \"drucker_prager\"\nyoung_modulus = 1e6\nfriction_angle_deg = 30\n";
     const SolidStage stage = scene_of(sand).solid.value();
     CHECK(stage.transfer == Transfer::flip);
+    CHECK(stage.split);  // nor does its thin end break off
+    CHECK_FALSE(scene_of(sand + "split = false\n").solid->split);
+    CHECK_FALSE(scene_of(two + west + "law = \"fluid\"\n").solid->split);
+    CHECK(scene_of(two + west + "law = \"fluid\"\nsplit = true\n").solid->split);
     CHECK(stage.blending == Approx(std::sqrt(2.5 / 9.81)).epsilon(1e-3));
     const std::string fluid = two + west + "law = \"fluid\"\n";
     CHECK(scene_of(fluid).solid->transfer == Transfer::tpic);

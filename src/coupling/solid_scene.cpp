@@ -45,6 +45,8 @@ Raster without_gaps(Raster bed) {
 /// As stiff as makes sound so fast; sand by the bed as strong as the bed's friction.
 SolidLaw law_of(const SolidStage& stage, double density, const SolidStart& start) {
     const double modulus = density * start.sound_speed * start.sound_speed;
+    constexpr double kPoisson = 0.3;  // as sand by its own keys has
+    const double young = modulus * (1.0 + kPoisson) * (1.0 - 2.0 * kPoisson) / (1.0 - kPoisson);
     SolidLaw law = stage.law;
     std::visit(
         [&](auto& chosen) {
@@ -52,9 +54,12 @@ SolidLaw law_of(const SolidStage& stage, double density, const SolidStart& start
                 chosen.bulk = modulus;
         },
         law);
+    if (auto* grains = std::get_if<solid::MuI>(&law)) {
+        grains->density = density;
+        if (stage.of_bed) grains->elastic = solid::Elastic::of(young, kPoisson);
+        return law;
+    }
     if (!stage.of_bed) return law;
-    constexpr double kPoisson = 0.3;  // as sand by its own keys has
-    const double young = modulus * (1.0 + kPoisson) * (1.0 - 2.0 * kPoisson) / (1.0 - kPoisson);
     return solid::DruckerPrager::of(solid::Elastic::of(young, kPoisson), std::atan(start.friction), 0.0);
 }
 

@@ -382,7 +382,13 @@ Sample StagedRun::at(const Vec2& point) const {
 /// What the 3D model has of the case's bed law.
 void StagedRun::remark_law(std::vector<std::string>& remarks) const {
     const SolidStage& stage = *scene_.solid;
-    if (stage.of_bed)
+    const auto* grains = std::get_if<solid::MuI>(&stage.law);
+    if (stage.of_bed && grains != nullptr)
+        remarks.push_back(
+            fmt::format("3D points are grains with the mu(I) of material.bed, from {:.4g} to {:.4g}; stage.law names "
+                        "another law",
+                        grains->mu_s, grains->mu_2));
+    else if (stage.of_bed)
         remarks.push_back(fmt::format(
             "3D points are sand with an internal friction of {:.3g} degrees, {}{}; stage.law names another law",
             std::atan(start_.friction) / constants::kDegree,

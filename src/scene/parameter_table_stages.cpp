@@ -135,15 +135,15 @@ void add_stages(Table& table) {
              "how velocity passes between points and grid: tpic has the quieter pressure, apic keeps angular momentum, "
              "flip lets points keep their velocity, so that what few cells hold is damped by time and not by step");
     transfer.choices = {"tpic", "apic", "flip"};
-    table.push_back(of_3d(transfer, "flip for drucker_prager, else tpic"));
+    table.push_back(of_3d(transfer, "flip for drucker_prager and mu_i, else tpic"));
     table.push_back(
         of_3d(number("stage.blending", "s", positive, "time in which points with flip take over the grid's velocity"),
               "sqrt(cell / gravity), in which material falls half a cell"));
     table.push_back(
-        with(flag("stage.split", false,
-                  "points that are drawn 0.8 of a cell apart become two, down to 1/64 of a cell each: thin ends "
-                  "keep together; up to eight times as many points"),
-             model, in_3d));
+        of_3d(make("stage.split", Kind::flag, "",
+                   "points that are drawn 0.8 of a cell apart become two, down to 1/64 of a cell each: thin ends "
+                   "keep together; up to eight times as many points"),
+              "true for drucker_prager and mu_i, else false"));
     table.push_back(with(choice("stage.profile", {"plug", "linear", "parabolic", "bagnold"}, "plug",
                                 "velocity over the depth that particles become points with"),
                          model, in_3d));

@@ -96,7 +96,7 @@ private:
         stage.law = law(stage);
         stage.stuck = given("stuck") && case_.flag(prefix_ + "stuck");
         stage.stuck_where_resolved = !given("stuck") && mud_of_bed() && !given("bed_friction");
-        stage.split = case_.flag(prefix_ + "split");
+        stage.split = given("split") ? case_.flag(prefix_ + "split") : solid::is_granular(stage.law);
         stage.bed_friction = number_or("bed_friction", friction_at_rest(scene_.bed_law));
         stage.whole_bed_law = !given("bed_friction") && (scene_.bed_laws() || hangs_on_speed(scene_.bed_law));
         stage.cfl = number("cfl");
@@ -126,8 +126,9 @@ private:
     /// Sand flips: where layers of few cells flow, a step's damping holds them back. The pressure of fluids is
     /// quieter without.
     void read_transfer(SolidStage& stage) {
-        const bool sand = std::holds_alternative<solid::DruckerPrager>(stage.law);
-        const std::string word = given("transfer") ? case_.word(prefix_ + "transfer") : sand ? "flip" : "tpic";
+        const std::string word = given("transfer")               ? case_.word(prefix_ + "transfer")
+                                 : solid::is_granular(stage.law) ? "flip"
+                                                                 : "tpic";
         stage.transfer = word == "apic" ? Transfer::apic : word == "flip" ? Transfer::flip : Transfer::tpic;
         stage.blending = number_or("blending", std::sqrt(stage.cell / scene_.gravity));
         if (given("blending") && word != "flip")  // by default: a word that is given has its row of combinations
@@ -234,12 +235,7 @@ private:
                             case_.word("material.rheology.law")),
                 "expected one of each: material in 3D has the same everywhere",
                 "give stage.viscosity and stage.yield_stress, or remove what makes material.rheology differ");
-        if (law == "of_bed") {
-            stage.of_bed = true;
-            refuse_others("drucker_prager by the bed's friction",
-                          [](const std::string& key) { return key == "sound_speed"; });
-            return solid::DruckerPrager::of({}, std::atan(friction_at_rest(scene_.bed_law)), 0.0);
-        }
+        if (law == "of_bed") return law_of_bed(stage);
         stage.fluid_by_drag = law == "fluid" && hangs_on_speed(scene_.bed_law) && !given("law") &&
                               !given("viscosity") && !mud_of_bed() &&
                               std::holds_alternative<rheology::None>(scene_.rheology);
@@ -248,8 +244,50 @@ private:
         if (solid::has_key(law, "yield_stress") && !(value("yield_stress").value_or(0.0) > 0.0))
             problems_.add(case_.place(prefix_ + "law"), fmt::format("found \"{}\" without a yield stress", law),
                           "expected stage.yield_stress, or that of material.rheology", "give one, or choose \"fluid\"");
+        if (law == "mu_i" && !has_grains()) return {};
         if (solid::has_key(law, "cohesion") && !has_apex(*value("friction_angle_deg"), *value("cohesion"))) return {};
         return solid::make(law, value);
+    }
+
+    /// Without a law of its own: sand as strong as the bed's friction, or grains with the bed's mu(I). Only their sound is
+    /// a key. Grains have one law everywhere, and need their bed to be as rough.
+    SolidLaw law_of_bed(SolidStage& stage) {
+        stage.of_bed = true;
+        const auto sound_alone = [](const std::string& key) { return key == "sound_speed"; };
+        if (grains_of_bed() != nullptr && !scene_.bed_laws() && !given("bed_friction")) {
+            refuse_others("mu_i by the bed's friction", sound_alone);
+            return solid::MuI::of([&](const std::string& name) { return of_grains(name); });
+        }
+        refuse_others("drucker_prager by the bed's friction", sound_alone);
+        return solid::DruckerPrager::of({}, std::atan(friction_at_rest(scene_.bed_law)), 0.0);
+    }
+
+    const bed::Pouliquen* grains_of_bed() const { return std::get_if<bed::Pouliquen>(&scene_.bed_law); }
+
+    /// A number of the bed's mu(I), by its name there and in mu_i.
+    std::optional<double> of_grains(const std::string& name) const {
+        const bed::Pouliquen* grains = grains_of_bed();
+        if (grains == nullptr) return {};
+        for (const auto& key : bed::Pouliquen::keys())
+            if (name == key.name) return grains->*key.parameter;
+        return {};
+    }
+
+    /// mu_i has its grains from the stage or from the bed's law.
+    bool has_grains() {
+        std::string missing;
+        for (const char* name : {"mu_s", "mu_2", "grain_diameter"})
+            if (!value_of(name)) missing += (missing.empty() ? "" : ", ") + std::string("stage.") + name;
+        if (!missing.empty())
+            problems_.add(case_.place(prefix_ + "law"), "found \"mu_i\" without " + missing,
+                          "expected it here, or material.bed.law = \"pouliquen\", which has it", "give one of both");
+        if (!missing.empty()) return false;
+        if (*value_of("mu_2") > *value_of("mu_s")) return true;
+        problems_.add(case_.place(prefix_ + "law"),
+                      fmt::format("found mu_2 = {:.6g} with mu_s = {:.6g}", *value_of("mu_2"), *value_of("mu_s")),
+                      "expected mu_2 above mu_s",
+                      "mu_s is the friction of slow flow, mu_2 that of fast flow; correct one");
+        return false;
     }
 
     /// Of a key of the stage's law, in the case or by default; else what the case's material has of that name.
@@ -260,6 +298,7 @@ private:
             if (choices.empty()) return case_.number(key);
             return static_cast<double>(std::find(choices.begin(), choices.end(), case_.word(key)) - choices.begin());
         }
+        if (const std::optional<double> grains = of_grains(name)) return grains;
         const bed::Bingham* mud = mud_of_bed();
         if (name == "viscosity") {
             if (const auto* newtonian = std::get_if<rheology::Newtonian>(&scene_.rheology)) return newtonian->viscosity;

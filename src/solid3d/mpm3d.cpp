@@ -269,11 +269,9 @@ void Mpm3d::advance(double until) {
     if (notes_ && status_.points != body_.points.count())
         for (Index p = 0; p < body_.points.count(); ++p)
             if (body_.gone[static_cast<std::size_t>(p)]) departed_.push_back(departed(p));
-    if (drift_ > kDriftLimit - 0.5 || status_.points != body_.points.count())
-        timed_("sort", [&] {
-            if (splits_) split();
-            sort();
-        });
+    const bool strayed = drift_ > kDriftLimit - 0.5;
+    if (strayed && splits_) timed_("split", [&] { split(); });
+    if (strayed || status_.points != body_.points.count()) timed_("sort", [&] { sort(); });
 }
 
 /// Sums in the order of the tiles: the same bits for any number of threads.

@@ -22,15 +22,25 @@ public:
     Index begin(Index cell) const { return begin_[cell]; }
     Index end(Index cell) const { return begin_[cell + 1]; }
 
-    /// Calls visit(cell) for those at most `reach` away along each axis, itself too, in their order.
-    template <class Visit>
-    void each_near(Index cell, Index reach, Visit&& visit) const {
+    /// Calls enough(cell) for those at most `reach` away along each axis, itself too, in their order, until it is true.
+    template <class Enough>
+    bool any_near(Index cell, Index reach, Enough&& enough) const {
         for (Index k = -reach; k <= reach; ++k)
             for (Index j = -reach; j <= reach; ++j) {
                 const Index row = key_[cell] + j * stride_[1] + k * stride_[2];
                 auto at = std::lower_bound(key_.begin(), key_.end(), row - reach);
-                for (; at != key_.end() && *at <= row + reach; ++at) visit(static_cast<Index>(at - key_.begin()));
+                for (; at != key_.end() && *at <= row + reach; ++at)
+                    if (enough(static_cast<Index>(at - key_.begin()))) return true;
             }
+        return false;
+    }
+    /// Calls visit(cell) for all of them.
+    template <class Visit>
+    void each_near(Index cell, Index reach, Visit&& visit) const {
+        any_near(cell, reach, [&](Index near) {
+            visit(near);
+            return false;
+        });
     }
 
 private:

@@ -342,12 +342,15 @@ public:
 
 private:
     static const solid::Elastic& elastic_of(const solid::Elastic& law) { return law; }
-    static const solid::Elastic& elastic_of(const solid::DruckerPrager& law) { return law.elastic; }
+    template <class Granular>
+    static const solid::Elastic& elastic_of(const Granular& law) {
+        return law.elastic;
+    }
 
     /// Logarithmic strain under a pressure: K tr(e) = - J p, J = exp(tr(e)), by turns: each errs p / K less. Returns J.
     static double press_solid(const solid::Elastic& law, double p, double* strain) {
         constexpr int kTurns = 20;
-        const double bulk = law.lambda + 2.0 / 3.0 * law.shear;
+        const double bulk = law.bulk();
         double volume = 0.0;
         for (int turn = 0; turn < kTurns; ++turn) volume = -p / bulk * std::exp(volume);
         std::fill_n(strain, 3, volume / 3.0);

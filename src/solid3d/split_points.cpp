@@ -17,33 +17,51 @@ Vec3 between(const MaterialPoints& q, Index from, Index to) {
     return {q.x[0][to] - q.x[0][from], q.x[1][to] - q.x[1][from], q.x[2][to] - q.x[2][from]};
 }
 
-/// The nearest point in each of six directions: those of the faces of a cube around a point.
+/// That of six directions, towards the faces of a cube around a point, in which another point lies.
+int side_of(const Vec3& way) {
+    int axis = 0;
+    way.cwiseAbs().maxCoeff(&axis);
+    return 2 * axis + (way[axis] > 0.0 ? 1 : 0);
+}
+
+/// Whether points lie within kGap in all six directions.
+bool is_inside(const MaterialPoints& q, const PointCells& cells, Index p, Index cell) {
+    constexpr int kAll = 0b111111;
+    int closed = 0;
+    return cells.any_near(cell, 1, [&](Index near) {
+        for (Index n = cells.begin(near); n < cells.end(near); ++n) {
+            if (cells.point(n) == p) continue;
+            const Vec3 way = between(q, p, cells.point(n));
+            if (way.squaredNorm() <= kGap * kGap) closed |= 1 << side_of(way);
+        }
+        return closed == kAll;
+    });
+}
+
+/// The nearest point in each of six directions.
 struct Around {
     double distance[6];  ///< [cells]
     Index point[6];
 
-    Around(const MaterialPoints& q, const PointCells& cells, Index p, Index cell, Index reach) {
+    Around(const MaterialPoints& q, const PointCells& cells, Index p, Index cell) {
         std::fill_n(distance, 6, std::numeric_limits<double>::infinity());
         std::fill_n(point, 6, Index{-1});
-        cells.each_near(cell, reach, [&](Index near) {
+        cells.each_near(cell, PointCells::kReach, [&](Index near) {
             for (Index n = cells.begin(near); n < cells.end(near); ++n)
                 if (cells.point(n) != p) meet(cells.point(n), between(q, p, cells.point(n)));
         });
     }
     void meet(Index other, const Vec3& way) {
-        int axis = 0;
-        way.cwiseAbs().maxCoeff(&axis);
-        const int side = 2 * axis + (way[axis] > 0.0 ? 1 : 0);
+        const int side = side_of(way);
         if (const double d = way.norm(); d < distance[side]) distance[side] = d, point[side] = other;
     }
-    bool closed() const { return *std::max_element(distance, distance + 6) <= kGap; }
 };
 
 /// Half the way between the halves; none where the point stays.
 Vec3 way_of_halves(const MaterialPoints& q, const PointCells& cells, Index p, Index cell) {
     Vec3 way = Vec3::Zero();
-    if (Around(q, cells, p, cell, 1).closed()) return way;
-    const Around all(q, cells, p, cell, PointCells::kReach);
+    if (is_inside(q, cells, p, cell)) return way;
+    const Around all(q, cells, p, cell);
     double nearest = kFar;
     for (int side = 0; side < 6; ++side) {
         if (!(all.distance[side] > kGap && all.distance[side] < nearest)) continue;

@@ -15,8 +15,9 @@ std::string key(const std::string& stage, const char* name) { return stage + "."
 
 /// A law of 3D material, as strong and stiff as suits its depth within some powers of ten.
 void draw_law(Dice& dice, Draft& draft, const std::string& stage, const Scales& of) {
-    const std::string law = dice.one_of(
+    std::string law = dice.one_of(
         {"fluid", "fluid", "fluid", "bingham", "herschel_bulkley", "drucker_prager", "drucker_prager", "elastic"});
+    if (law == "drucker_prager" && dice.chance(0.3)) law = "mu_i";
     const double density = dice.decades(300.0, 3000.0), weight = density * of.gravity * of.deepest;
     say(draft, "material.density", density);
     say(draft, key(stage, "law"), law);
@@ -30,14 +31,21 @@ void draw_law(Dice& dice, Draft& draft, const std::string& stage, const Scales& 
         say(draft, key(stage, "consistency"), thick * dice.decades(1e-6, 1e-2));
         say(draft, key(stage, "exponent"), dice.between(0.2, 1.0));
     }
-    if (law == "drucker_prager" || law == "elastic") {
+    if (law == "drucker_prager" || law == "mu_i" || law == "elastic") {
         say(draft, key(stage, "young_modulus"), (weight + density * of.speed * of.speed) * dice.decades(30.0, 1000.0));
         if (dice.chance(0.5)) say(draft, key(stage, "poisson_ratio"), dice.between(0.0, 0.45));
     }
     if (law == "drucker_prager") {
         say(draft, key(stage, "friction_angle_deg"), dice.between(5.0, 60.0));
         if (dice.chance(0.4)) say(draft, key(stage, "cohesion"), weight * dice.decades(1e-3, 1.0));
-        if (dice.chance(0.3)) say(draft, key(stage, "cone"), "plane_strain");
+        if (dice.chance(0.3)) say(draft, key(stage, "cone"), dice.one_of({"plane_strain", "simple_shear"}));
+    }
+    if (law == "mu_i") {
+        const double slow = dice.between(0.05, 1.0);
+        say(draft, key(stage, "mu_s"), slow);
+        say(draft, key(stage, "mu_2"), slow + dice.decades(1e-2, 1.0));
+        say(draft, key(stage, "grain_diameter"), of.deepest * dice.decades(1e-4, 1.0));
+        if (dice.chance(0.5)) say(draft, key(stage, "i0"), dice.decades(1e-2, 10.0));
     }
     if ((law == "fluid" || law == "bingham") && dice.chance(0.2))
         say(draft, key(stage, "sound_speed"), of.wave * dice.between(8.0, 30.0));

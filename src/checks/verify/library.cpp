@@ -30,6 +30,7 @@ const std::vector<Problem>& library() {
                                  body_problems,
                                  column_problems,
                                  mud_problems,
+                                 bagnold_problems,
                                  erosion_problems,
                                  bed_wave_problems,
                                  collapse_problems,

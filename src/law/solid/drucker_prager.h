@@ -2,14 +2,15 @@
 #include <cmath>
 
 #include "base/constants.h"
-#include "law/solid/elastic.h"
+#include "law/solid/cone.h"
 
 namespace frana::solid {
 
-/// Where Drucker and Prager's cone meets Mohr and Coulomb's pyramid: in triaxial compression, or in plane
-/// strain. In plane strain, flow without dilatancy makes the stress across the plane the mean of the others. Both laws
-/// then agree.
-enum class Cone { compression, plane_strain };
+/// Where Drucker and Prager's cone meets Mohr and Coulomb's pyramid: in triaxial compression, in plane strain, or on the
+/// plane that a layer slides on. In plane strain, flow without dilatancy makes the stress across the plane the mean of the
+/// others. Both laws then agree. But planes along which that flow goes on carry sin(phi) of their pressure alone, so that
+/// heaps come to rest at less than phi. In simple shear they carry tan(phi), and phi is the angle of repose.
+enum class Cone { compression, plane_strain, simple_shear };
 
 /// src/solid3d/THEORY.md (21), (22): sand, soil. It is elastic as above within the cone |s| = alpha (p + p_t) of Drucker
 /// and Prager, in Kirchhoff stress, p_t = c cot(phi). Flow conserves the volume (no dilatancy). At the apex the material
@@ -24,23 +25,20 @@ struct DruckerPrager {
                  "",
                  {},
                  "where drucker_prager is as strong as Mohr and Coulomb's law of that angle: in triaxial compression, "
-                 "or in plane strain, as heaps and slopes fail",
+                 "in plane strain, as slopes fail, or in simple_shear, so that the angle is that of repose",
                  Missing::usual,
                  0.0,
                  "",
-                 {"triaxial", "plane_strain"}},
+                 {"triaxial", "plane_strain", "simple_shear"}},
                 young_modulus(),
                 poisson_ratio()};
     }
     static DruckerPrager of(const Values& value) {
         return of(Elastic::of(value), *value("friction_angle_deg") * constants::kDegree, *value("cohesion"),
-                  *value("cone") > 0.0 ? Cone::plane_strain : Cone::compression);
+                  static_cast<Cone>(static_cast<int>(*value("cone"))));
     }
     static constexpr int kStates = 7;  ///< logarithmic elastic strain; volume gained at the apex, ln J [1]
     static constexpr bool kAverages = false;
-    /// Volume over that without stress of points that have parted: twice as far apart in each direction. What flies
-    /// apart further leaves room between points, which need not close before they carry pressure again.
-    static constexpr double kLoosest = 8.0;
     Elastic elastic;
     double alpha = 0.0;    ///< |s| per pressure [1]
     double tension = 0.0;  ///< p_t, the pressure at the apex, negated [Pa]
@@ -53,22 +51,8 @@ struct DruckerPrager {
     }
     template <class Real>
     [[gnu::always_inline]] void update(const DeformationOf<Real>& d, Real& j, Given<Real>* state) const {
-        const Square<Real> grown = grown_in<Real>(d);
-        const SymOf<Real> trial = carried<Real>(SymOf<Real>::read(state), grown);
-        j *= volume_ratio<Real>(grown);
-        const double bulk = elastic.lambda + 2.0 / 3.0 * elastic.shear;
-        const double apex = tension / bulk;  // the volume strain at which nothing is carried any more
-        const Real volume = trial.trace() + state[6];
-        const auto parted = volume >= apex;
-        const SymOf<Real> shear_strain = trial.deviator();
-        const Real size = 2.0 * elastic.shear * shear_strain.norm();
-        const Real strength = alpha * bulk * (apex - volume);
-        const Real yielding = strength / select(size > 0.0, size, Real{} + 1.0);
-        const Real kept = select(parted, Real{}, select(size > strength, yielding, Real{} + 1.0));
-        (shear_strain * kept).plus_isotropic(select(parted, Real{} + apex, volume) / 3.0).write(state);
-        const Real gap = select(parted, volume - apex, Real{}), widest = Real{} + std::log(kLoosest);
-        state[6] = min(gap, widest);
-        j = min(j, Real{} + kLoosest);
+        const double bulk = elastic.bulk();
+        flow_in_cone<Real>(d, j, state, elastic, tension / bulk, [&](Real, Real room) { return alpha * bulk * room; });
     }
     template <class Real>
     [[gnu::always_inline]] Real stored(Real j, const Given<Real>* state) const {

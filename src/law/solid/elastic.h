@@ -35,6 +35,7 @@ struct Elastic {
         const SymOf<Real> e = SymOf<Real>::read(state);
         return shear * contracted(e, e) + 0.5 * lambda * e.trace() * e.trace();
     }
+    double bulk() const { return lambda + 2.0 / 3.0 * shear; }  ///< K [Pa]
     double sound_speed(double density) const { return std::sqrt((lambda + 2.0 * shear) / density); }
     double explicit_viscosity() const { return 0.0; }
 };

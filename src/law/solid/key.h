@@ -54,14 +54,15 @@ inline Key sound_speed() {
 }
 
 inline Key young_modulus() {
-    return {"young_modulus", "Pa", ranges::positive,
-            "stiffness of drucker_prager or elastic; the stiffer, the more steps: about 100 density gravity depth is "
-            "enough"};
+    return {
+        "young_modulus", "Pa", ranges::positive,
+        "stiffness of drucker_prager, mu_i or elastic; the stiffer, the more steps: about 100 density gravity depth is "
+        "enough"};
 }
 
 inline Key poisson_ratio() {
     return {"poisson_ratio",         "1",
-            {0.0, 0.5, false, true}, "share of a strain that shows across it, of drucker_prager or elastic",
+            {0.0, 0.5, false, true}, "share of a strain that shows across it, of drucker_prager, mu_i or elastic",
             Missing::usual,          0.3};
 }
 

@@ -45,6 +45,10 @@ constexpr const SolidLaw* kList = nullptr;
 
 }  // namespace
 
+bool is_granular(const SolidLaw& law) {
+    return std::holds_alternative<DruckerPrager>(law) || std::holds_alternative<MuI>(law);
+}
+
 std::vector<std::string> words() { return laws::Catalogue<SolidLaw>::words(); }
 
 std::vector<SharedKey> shared_keys() { return keys_of(kList); }

@@ -31,14 +31,17 @@
 #include "law/solid/elastic.h"
 #include "law/solid/fluid.h"
 #include "law/solid/herschel_bulkley.h"
+#include "law/solid/mu_i.h"
 
 namespace frana {
 
-using SolidLaw =
-    std::variant<solid::Fluid, solid::Bingham, solid::Elastic, solid::DruckerPrager, solid::HerschelBulkley>;
+using SolidLaw = std::variant<solid::Fluid, solid::Bingham, solid::Elastic, solid::DruckerPrager,
+                              solid::HerschelBulkley, solid::MuI>;
 
 namespace solid {
 
+/// Sand and grains, which part where nothing presses them together.
+bool is_granular(const SolidLaw& law);
 /// Words of the laws, in the order of the list.
 std::vector<std::string> words();
 /// A key as all laws of the list have it.
