@@ -8,6 +8,7 @@
 #include "base/compensated_sum.h"
 #include "base/error.h"
 #include "shallow/depth_averaged.h"
+#include "shallow/shock.h"
 #include "shallow/sides.h"
 
 namespace frana {
