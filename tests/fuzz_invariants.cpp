@@ -225,6 +225,24 @@ TEST_CASE("Scenes that once broke an invariant break none", "[fuzz]") {
         {161803, 8685, "material.rheology.viscosity", "0.6226696922744507"},
         // Linear shapes have no energy law.
         {77003, 1805, "scheme.cfl", "0.2813935057952504"},
+        // Artificial viscosity gave more than a velocity jump in one step.
+        {20261130, 23534, "material.rheology.viscosity", "182874.9513840854"},
+        {20261130, 41772, "inflow#0.velocity", "59.65731288008794"},
+        {20261130, 43104, "scheme.viscosity_quadratic", "2.0"},
+        // The nodes' velocities cancelled, and which of the nodes around lay behind was what was left.
+        {20261130, 21678, "material.bed.viscosity", "0.00011408840801763384"},
+        // A climb that stops left the round-off of heights of 1650 m, and friction took that for a direction.
+        {20261130, 23176, "material.bed.grain_diameter", "1.2882987306199064e-05"},
+        // Points too light to split, alone: their own pressure stretched them again after each cut of their domains.
+        {20261130, 9718, "scheme.strain_rate_floor", "0.03918799188243738"},
+        // Linear shapes took more viscosity than plain points can have.
+        {20261130, 9566, "material.rheology.yield_stress", "8.256769522429586"},
+        {20261125, 251, "scheme.preset", "\"paper\""},
+        // A pit a cell beyond the material, which its surface slopes to.
+        {20261130, 5559, "material.bed.xi", "5366119.22106256"},
+        // Points of flip with a velocity of their own.
+        {20261130, 7645, "deposition.time", "0.007449285668167268"},
+        {20261140, 334, "scheme.flip_ratio", "1.0"},
     };
     for (const auto& [seed, n, key, value] : past) {
         const Draft draft = draw(seed, n);
@@ -306,6 +324,52 @@ TEST_CASE("A speed beyond the line is allowed by what velocity changes across a 
     CHECK(fast(13.0, 6.0) == "");
     CHECK(fast(16.0, 6.0) == "speed");
     CHECK(fast(20.0, 1e3) == "speed");
+}
+
+TEST_CASE("A speed beyond the line is allowed by what points of flip have beyond their nodes", "[fuzz]") {
+    Draft draft = mound();
+    draft.keys["scheme.transfer"] = "\"flip\"";
+    const auto fast = [&](double speed, double own) {
+        return broken_by(draft, [=](Snapshot& s) { s.max_speed = speed, s.points.own[3] = own; });
+    };
+    CHECK(fast(13.0, 0.0) == "speed");
+    CHECK(fast(13.0, 6.0) == "");
+    CHECK(fast(16.0, 6.0) == "speed");
+    CHECK(fast(20.0, 1e3) == "speed");
+}
+
+TEST_CASE("What points of flip have beyond their nodes is none where all have one velocity", "[fuzz]") {
+    Draft draft = mound();
+    draft.keys["scheme.transfer"] = "\"flip\"", draft.keys["release.velocity"] = "[3.0, -2.0]";
+    const Scene scene = scene_of(draft);
+    DepthAveraged simulation(scene);
+    for (const double own : snapshot_of(simulation, true).points.own) CHECK(own < 1e-13);
+    Scene two = scene;
+    for (std::size_t p = 0; p < two.particles.vx.size(); p += 2) two.particles.vx[p] = -3.0;
+    DepthAveraged mixed(two);
+    double most = 0.0;
+    for (const double own : snapshot_of(mixed, true).points.own) most = std::max(most, own);
+    CHECK(most > 1.0);
+    CHECK(most < 6.0);
+}
+
+TEST_CASE("The fall to a node beside the material counts as one of a point", "[fuzz]") {
+    const auto fast = [](double speed, double pit) {
+        return broken_by([=](Snapshot& s) { s.max_speed = speed, s.nodes[0].foot = -pit; });
+    };
+    CHECK(fast(20.0, 0.0) == "speed");
+    CHECK(fast(20.0, 30.0) == "");  // 24 m/s
+    CHECK(fast(40.0, 30.0) == "speed");
+
+    Draft draft = mound();  // pixels 7 to 12
+    draft.rasters["dem.tif"].at(3, 9) = -30.0;
+    const Scene scene = scene_of(draft);
+    DepthAveraged simulation(scene);
+    double lowest = 0.0, foot = 0.0;
+    for (const NodeState& node : snapshot_of(simulation, true).nodes)
+        lowest = std::min(lowest, node.bed), foot = std::min(foot, node.foot);
+    CHECK(foot < lowest);
+    CHECK(foot >= -30.0);
 }
 
 TEST_CASE("A point of a resting pile that moves by one bit is seen", "[fuzz]") {

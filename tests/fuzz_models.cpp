@@ -211,6 +211,12 @@ TEST_CASE("Scenes of other models that once broke an invariant break none", "[fu
         // A block that goes under a lake.
         {Model::water, 2, 623, "water.level", "270.26186061017535"},
         {Model::water, 2, 1169, "water.level", "250.85933892752848"},
+        // Grains that climb, whose velocities are half a step behind.
+        {Model::structured, 20261201, 2504, "material.structure.young_modulus", "513720.09241498896"},
+        // Blocks of a pixel, which nodes have lower than they are.
+        {Model::structured, 20261302, 3245, "material.structure.cohesion", "1078.8574511427819"},
+        {Model::structured, 20261126, 8791, "material.structure.young_modulus", "10177142.087880127"},
+        {Model::structured, 20261153, 79, "material.structure.young_modulus", "3777925.4076730236"},
     };
     for (const auto& [model, seed, n, key, value] : past) {
         const Draft draft = draw(model, seed, n);

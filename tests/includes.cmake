@@ -93,7 +93,7 @@ room(src/coupling base terrain observe convert run mpm scene shallow solid3d wat
 room(src/ensemble base terrain compare observe run scene)
 room(src/checks/verify base terrain law/bed law/erosion observe convert mpm scene shallow solid3d water structured coupling)
 room(src/checks/bench base observe mpm scene shallow solid3d structured coupling)
-room(src/checks/fuzz base terrain observe run scene shallow coupling)
+room(src/checks/fuzz base terrain observe run scene mpm shallow coupling)
 # Files, pictures, the program.
 room(src/io base terrain observe particles convert scene PACKAGES "gdal|ogr|cpl_|proj|hdf5|H5")
 room(vtk_io base terrain observe particles compare scene PACKAGES "vtk")

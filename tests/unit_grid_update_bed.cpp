@@ -1,4 +1,6 @@
 // The terrain under a grid update, at one node, against its formulas.
+#include <limits>
+
 #include "analytic_scene.h"
 #include "catch.h"
 #include "shallow/grid_update_bed.h"
@@ -133,7 +135,7 @@ TEST_CASE("A climb costs what it lifts where the bed is sharper than its smoothe
     const double g = 9.81, dt = 0.01, own = bed.smooth->x / bed.bx, cosine = 1.0;
     REQUIRE(own < 0.1);
     double vx = 8.0 - dt * g * bed.drive(bed.bx, 0.0, cosine).x, vy = 3.0;
-    bed.climb(bed.bx, 0.0, 0.0, g, g, dt, vx, vy);
+    bed.climb(bed.bx, 0.0, 0.0, g, flow.cell, g, dt, vx, vy);
     // All of g e but for the square of the share that the smoothed bed has, below 1.2 %.
     CHECK(8.0 - vx <= dt * g * bed.bx * (1.0 + 1e-12));
     CHECK(8.0 - vx >= 0.988 * dt * g * bed.bx);
@@ -142,18 +144,18 @@ TEST_CASE("A climb costs what it lifts where the bed is sharper than its smoothe
     // A front on the bank, whose surface was mended to that of the pool before it.
     double front = 8.0;
     vy = 3.0;
-    bed.climb(0.0, 0.0, 1.0, g, g, dt, front, vy);
+    bed.climb(0.0, 0.0, 1.0, g, flow.cell, g, dt, front, vy);
     CHECK(8.0 - front <= dt * g * bed.bx * (1.0 + 1e-12));
     CHECK(8.0 - front >= 0.97 * dt * g * bed.bx);  // that square enters twice
     double inner = 8.0;
-    bed.climb(0.0, 0.0, 0.0, g, g, dt, inner, vy);
+    bed.climb(0.0, 0.0, 0.0, g, flow.cell, g, dt, inner, vy);
     CHECK(inner == 8.0);
 
     double down = -8.0, across = 3.0;
-    bed.climb(bed.bx, 0.0, 0.0, g, g, dt, down, across);
+    bed.climb(bed.bx, 0.0, 0.0, g, flow.cell, g, dt, down, across);
     CHECK(down == -8.0);
     double slow = 1e-6, still = 0.0;
-    bed.climb(bed.bx, 0.0, 0.0, g, g, dt, slow, still);
+    bed.climb(bed.bx, 0.0, 0.0, g, flow.cell, g, dt, slow, still);
     CHECK(slow == 0.0);  // it stops, and is not turned
     CHECK(still == 0.0);
 }
@@ -170,10 +172,48 @@ TEST_CASE("What a step in the bed stops stands still, whichever way the step ris
         const Flow flow(scene);
         const SteepBed<double, Curvature::full, false> bed(flow, flow.grid.at(15, 15));
         double vx = 1e-3 * bed.bx, vy = 1e-3 * bed.by;
-        bed.climb(bed.bx, bed.by, 0.0, 9.81, 9.81, 0.1, vx, vy);
+        bed.climb(bed.bx, bed.by, 0.0, 9.81, flow.cell, 9.81, 0.1, vx, vy);
         moving += vx != 0.0 || vy != 0.0;
     }
     CHECK(moving == 0);
+}
+
+// Heights of 1650 m have a round-off of 2e-13 m, and slopes of cells of 0.3 m have it three times.
+TEST_CASE("What a step stops high above the sea stands still too", "[grid_update]") {
+    const double cell = 0.3, height = 1650.0;
+    Scene scene = verify::scene_on(31, 31, cell, [&](double x, double y) {
+        return height + std::clamp(5.0 * (x + y - 30.0 * cell), 0.0, 10.0 * cell);
+    });
+    scene.scheme.curvature_length = 20.0 * cell;
+    Flow flow(scene);
+    const Index k = flow.grid.at(15, 15);
+    flow.nodes.surface[k] = height;
+    const SteepBed<double, Curvature::full, false> bed(flow, k);
+    const double off = std::numeric_limits<double>::epsilon() * height / cell;
+    for (const double turned : {-off, off}) {
+        double vx = 1e-3 * bed.bx, vy = 1e-3 * bed.by;
+        bed.climb(bed.bx + turned, bed.by - turned, 0.0, 9.81, cell, 9.81, 0.1, vx, vy);
+        CHECK(vx == 0.0);
+        CHECK(vy == 0.0);
+    }
+    double vx = 1e-3 * bed.bx, vy = 1.001e-3 * bed.by;  // what goes along the step goes on
+    bed.climb(bed.bx, bed.by, 0.0, 9.81, cell, 9.81, 0.1, vx, vy);
+    CHECK(std::hypot(vx, vy) > 1e-7 * bed.by);
+}
+
+// Round-off of the height is large against a slope of nothing. What is left of the speed is no round-off.
+TEST_CASE("High above the sea a surface that is next to level stops nothing", "[grid_update]") {
+    const Scene scene = verify::scene_on(31, 31, 1.0, [](double x, double) { return 1650.0 + 0.5 * x; });
+    Flow flow(scene);
+    const Index k = flow.grid.at(12, 15);
+    flow.nodes.surface[k] = 1657.0;
+    const SteepBed<double, Curvature::full, false> bed(flow, k);
+    for (const double slope : {1e-300, 1e-20, 1e-12, 1e-9}) {
+        double vx = 2.0, vy = 1.0;
+        bed.climb(slope, 0.0, 0.0, 9.81, 1.0, 9.81, 0.01, vx, vy);
+        CHECK(vx == Approx(2.0).epsilon(1e-9));
+        CHECK(vy == 1.0);
+    }
 }
 
 TEST_CASE("A climb on a smooth bed costs nothing more", "[grid_update]") {
@@ -182,7 +222,7 @@ TEST_CASE("A climb on a smooth bed costs nothing more", "[grid_update]") {
     const Flow flow(scene);
     const SteepBed<double, Curvature::full, false> bed(flow, flow.grid.at(20, 15));
     double vx = 8.0, vy = -3.0;
-    bed.climb(bed.bx + 0.1, bed.by - 0.2, 1.0, 9.81, 12.0, 0.01, vx, vy);
+    bed.climb(bed.bx + 0.1, bed.by - 0.2, 1.0, 9.81, flow.cell, 12.0, 0.01, vx, vy);
     CHECK(vx == Approx(8.0).epsilon(kRoundOff));
     CHECK(vy == Approx(-3.0).epsilon(kRoundOff));
 }

@@ -131,7 +131,9 @@ TEMPLATE_TEST_CASE("Four points that stay whole are cut as each of them is", "[p
     } points;
     struct Edges4 {
         std::vector<TestType> r1x = std::vector<TestType>(4), r1y = r1x, r2x = r1x, r2y = r1x;
+        std::vector<TestType> cxx = r1x, cxy = r1x, cyx = r1x, cyy = r1x;
     };
+    const auto alone = [](Index p) { return p % 2 == 1; };
     std::mt19937 random(8);
     std::uniform_real_distribution<double> any(-1, 1);
     const double longest = 1.0;
@@ -144,6 +146,7 @@ TEMPLATE_TEST_CASE("Four points that stay whole are cut as each of them is", "[p
             held.r1y[n] = static_cast<TestType>(0.3 * any(random));
             held.r2x[n] = static_cast<TestType>(0.3 * any(random)),
             held.r2y[n] = static_cast<TestType>(size * any(random));
+            for (auto* c : {&held.cxx, &held.cxy, &held.cyx, &held.cyy}) (*c)[n] = static_cast<TestType>(any(random));
         }
         const HalvingRules rules{1.0, 2.5 + 2.0 * any(random), k % 5 != 0, k % 2 == 0, 0.0};
         Edges4 before = held, one = held;
@@ -152,9 +155,11 @@ TEMPLATE_TEST_CASE("Four points that stay whole are cut as each of them is", "[p
             one_changed |= clamp_edges(one, n, 2.0 * longest);
             if (rules.straighten && straighten(one, n)) simple = false;
             if (rules.split && parts_of(one, n, points.mass[static_cast<std::size_t>(n)], rules) > 1) simple = false;
-            one_changed |= clamp_edges(one, n, longest);
+            const bool here = clamp_edges(one, n, longest);
+            if (here && alone(n)) stop_where_cut(one, n, longest);
+            one_changed |= here;
         }
-        const bool done = four_cut(points, held, 0, rules, longest, changed);
+        const bool done = four_cut(points, held, 0, rules, longest, alone, changed);
         if (!simple) CHECK_FALSE(done);  // it may leave more alone than it must
         if (!done) {
             ++left;
@@ -169,11 +174,44 @@ TEMPLATE_TEST_CASE("Four points that stay whole are cut as each of them is", "[p
             CHECK(std::abs(held.r1y[n] - one.r1y[n]) <= slack);
             CHECK(std::abs(held.r2x[n] - one.r2x[n]) <= slack);
             CHECK(std::abs(held.r2y[n] - one.r2y[n]) <= slack);
+            for (const auto c : {&Edges4::cxx, &Edges4::cxy, &Edges4::cyx, &Edges4::cyy}) {
+                CHECK(std::abs((held.*c)[n] - (one.*c)[n]) <= 100.0 * slack);  // over a tenth, at least
+                if (!alone(static_cast<Index>(n))) CHECK((held.*c)[n] == (before.*c)[n]);
+            }
         }
     }
     CHECK(cut > 100);
     CHECK(left > 100);
     CHECK(whole > 100);
+}
+
+TEST_CASE("A point that is alone stretches no more along edges that are cut", "[points]") {
+    struct One {
+        std::vector<double> r1x{1.0}, r1y{0.0}, r2x{0.3}, r2y{0.4}, cxx{2.0}, cxy{0.3}, cyx{-0.7}, cyy{1.0};
+        double along(double x, double y) const {
+            return (x * (cxx[0] * x + cxy[0] * y) + y * (cyx[0] * x + cyy[0] * y)) / (x * x + y * y);
+        }
+    };
+    One one;  // its second edge is shorter than a cell: it may grow
+    stop_where_cut(one, 0, 1.0);
+    CHECK(std::abs(one.along(1.0, 0.0)) < 1e-15);
+    CHECK((one.cxy[0] == 0.3 && one.cyx[0] == -0.7 && one.cyy[0] == 1.0));
+
+    One both;
+    both.r2x[0] = 0.6, both.r2y[0] = 0.8;
+    One turned = both;
+    std::swap(turned.r1x, turned.r2x), std::swap(turned.r1y, turned.r2y);
+    stop_where_cut(both, 0, 1.0), stop_where_cut(turned, 0, 1.0);
+    CHECK(std::abs(both.along(1.0, 0.0)) < 1e-15);
+    CHECK(std::abs(both.along(0.6, 0.8)) < 1e-15);
+    CHECK(both.cxy[0] - both.cyx[0] == Approx(1.0).epsilon(1e-14));  // it turns on
+    CHECK(both.cxx == turned.cxx);
+    CHECK(both.cyx == turned.cyx);
+
+    One squeezed;
+    squeezed.cxx[0] = -2.0;
+    stop_where_cut(squeezed, 0, 1.0);
+    CHECK(squeezed.cxx[0] == -2.0);
 }
 
 TEST_CASE("Merging thins a crowd and conserves mass, momentum, centre and second moments", "[points]") {

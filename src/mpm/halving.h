@@ -47,6 +47,34 @@ bool clamp_edges(Held& held, Index p, double longest) {
     return clamp_edge(held.r2x[p], held.r2y[p], longest) || first;
 }
 
+/// Edges whose squared lengths differ by no more than this share are equally long: round-off.
+template <class Held>
+constexpr double kSameLength = sizeof(*Held().r1x.data()) == sizeof(float) ? 1e-5 : 1e-9;
+
+/// Takes out of a point's gradient what stretches it along edges that are `longest` at least, and have just been cut to
+/// it. A point that is alone stays as high as it was, however long its pressure has driven it apart: it would win energy
+/// without end. Both edges count at once, or their order would tell.
+template <class Held>
+void stop_where_cut(Held& held, Index p, double longest) {
+    using Real = typename decltype(held.cxx)::value_type;
+    const double least2 = (1.0 - kSameLength<Held>)*longest * longest;
+    const Edges e = edges_of(held, p);
+    const double xx = held.cxx[p], xy = held.cxy[p], yx = held.cyx[p], yy = held.cyy[p];
+    // Rate at which an edge grows over its length, where it is cut and grows.
+    const auto rate = [&](double x, double y, double length2) {
+        return length2 < least2 ? 0.0 : std::max(0.0, (x * x * xx + (xy + yx) * (x * y) + y * y * yy) / length2);
+    };
+    const double l1 = e.length1_2(), l2 = e.length2_2(), a1 = rate(e.r1x, e.r1y, l1), a2 = rate(e.r2x, e.r2y, l2);
+    if (a1 == 0.0 && a2 == 0.0) return;
+    const double dot = e.r1x * e.r2x + e.r1y * e.r2y, c2 = a1 > 0.0 && a2 > 0.0 ? dot * dot / (l1 * l2) : 0.0;
+    const double whole = 1.0 / std::max(0.1, 1.0 - c2 * c2);  // a domain that is straightened has 0.12 at least
+    const double s1 = l1 > 0.0 ? whole * (a1 - c2 * a2) / l1 : 0.0, s2 = l2 > 0.0 ? whole * (a2 - c2 * a1) / l2 : 0.0;
+    const double shear = s1 * (e.r1x * e.r1y) + s2 * (e.r2x * e.r2y);
+    held.cxx[p] = static_cast<Real>(xx - (s1 * (e.r1x * e.r1x) + s2 * (e.r2x * e.r2x)));
+    held.cyy[p] = static_cast<Real>(yy - (s1 * (e.r1y * e.r1y) + s2 * (e.r2y * e.r2y)));
+    held.cxy[p] = static_cast<Real>(xy - shear), held.cyx[p] = static_cast<Real>(yx - shear);
+}
+
 /// Squared lengths of a domain's edges over its squared area, from which on it is strongly sheared.
 inline double most_sheared() { return 16.0; }
 
@@ -59,10 +87,6 @@ bool straighten(Held& held, Index p) {
     set_edges(held, p, rectangle_of(Moments::of(e)));
     return true;
 }
-
-/// Edges whose squared lengths differ by no more than this share are equally long: round-off.
-template <class Held>
-constexpr double kSameLength = sizeof(*Held().r1x.data()) == sizeof(float) ? 1e-5 : 1e-9;
 
 /// How many points a domain becomes: 1, 2, or 4 where both edges are equally long. Then round-off must not choose one, or
 /// mirror particles part.
@@ -91,8 +115,9 @@ bool four_stay(const Held& held, Index p, const HalvingRules& rules) {
 
 /// Cuts the edges of four points in a row. Does nothing and returns false if one may have to be halved or straightened.
 /// A thin sheet is made of points that are long and too light to be halved.
-template <class Points, class Held>
-bool four_cut(const Points& c, Held& held, Index p, const HalvingRules& rules, double longest, bool& changed) {
+template <class Points, class Held, class Alone>
+bool four_cut(const Points& c, Held& held, Index p, const HalvingRules& rules, double longest, Alone&& alone,
+              bool& changed) {
     Double4 r1x = load(&held.r1x[p], 4), r1y = load(&held.r1y[p], 4);
     Double4 r2x = load(&held.r2x[p], 4), r2y = load(&held.r2y[p], 4);
     const Double4 l1 = r1x * r1x + r1y * r1y, l2 = r2x * r2x + r2y * r2y, area = r1x * r2y - r1y * r2x;
@@ -108,6 +133,8 @@ bool four_cut(const Points& c, Held& held, Index p, const HalvingRules& rules, d
                   share2 = select(length2 > longest, longest / length2, whole);
     store(&held.r1x[p], share1 * r1x, 4), store(&held.r1y[p], share1 * r1y, 4);
     store(&held.r2x[p], share2 * r2x, 4), store(&held.r2y[p], share2 * r2y, 4);
+    for (int n = 0; n < 4; ++n)
+        if ((share1[n] < 1.0 || share2[n] < 1.0) && alone(p + n)) stop_where_cut(held, p + n, longest);
     changed = true;
     return true;
 }
@@ -161,11 +188,12 @@ void halve_into(Points& c, Held& held, Index p, Index q, int parts, double cell)
     halve(c, held, q, q + 2, other, cell);
 }
 
-/// Cuts and straightens the domains of all points of tiles awake, and halves those that `may(p)` and are long. New points
-/// are appended; returns how many. The same bits for any number of threads.
-template <class Points, class Held, class May>
+/// Cuts and straightens the domains of all points of tiles awake, and halves those that `may(p)` and are long. Those that
+/// are cut and `alone(p)` stretch no more. New points are appended; returns how many. The same bits for any number of
+/// threads.
+template <class Points, class Held, class May, class Alone>
 Index halve_points(const TileGrid& grid, ActiveTiles& active, const HalvingRules& rules, Points& c, Held& held,
-                   Halves& halves, May&& may) {
+                   Halves& halves, May&& may, Alone&& alone) {
     const Index count = c.count();
     const double longest = std::max(1.0, rules.length);
     const auto parts = [&](Index p) { return rules.split && may(p) ? parts_of(held, p, c.mass[p], rules) : 1; };
@@ -177,14 +205,17 @@ Index halve_points(const TileGrid& grid, ActiveTiles& active, const HalvingRules
         if (active.quiet[tile] >= kAsleep) return;
         const Index end = active.begin[n + 1];
         for (Index p = active.begin[n]; p < end; ++p) {
-            if (p + 4 <= end && (four_stay(held, p, rules) || four_cut(c, held, p, rules, longest, changed))) {
+            if (p + 4 <= end && (four_stay(held, p, rules) || four_cut(c, held, p, rules, longest, alone, changed))) {
                 p += 3;
                 continue;
             }
             changed |= clamp_edges(held, p, 2.0 * longest);
             if (rules.straighten) changed |= straighten(held, p);
             const int into = parts(p);
-            if (into == 1) changed |= clamp_edges(held, p, longest);
+            if (into == 1 && clamp_edges(held, p, longest)) {
+                changed = true;
+                if (alone(p)) stop_where_cut(held, p, longest);
+            }
             found += into - 1;
         }
         halves.tile_first[n + 1] = found;

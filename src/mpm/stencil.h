@@ -10,6 +10,8 @@ namespace frana {
 /// u is the position in cells; N = {(3/2-f)^2/2, 3/4-(f-1)^2, (f-1/2)^2/2}, f = u - base in [1/2, 3/2).
 struct Quadratic {
     static constexpr int kNodes = 3;
+    /// Of a point's mass the most that comes back to it from the nodes around: on one of them, (sum N^2)^2 [1].
+    static constexpr double kMostOfItself = 0.59375 * 0.59375;
     Index base;
     double w[3];
     explicit Quadratic(double u) {
@@ -29,6 +31,7 @@ struct Quadratic {
 /// Cubic B-spline in one direction: 4 nodes from `base`, f = u - base in [1, 2).
 struct Cubic {
     static constexpr int kNodes = 4;
+    static constexpr double kMostOfItself = 0.5 * 0.5;
     Index base;
     double w[4];
     explicit Cubic(double u) {
@@ -51,6 +54,7 @@ struct Cubic {
 /// Linear shape function (bilinear in the plane), the choice of Fois et al. 2024, eq. 14: 2 nodes from `base`.
 struct Linear {
     static constexpr int kNodes = 2;
+    static constexpr double kMostOfItself = 1.0;
     Index base;
     double w[2];
     explicit Linear(double u) {

@@ -298,9 +298,9 @@ void add_scheme(Table& table) {
                "smoothing of the bed for its curvature and for speeds along it, 14 cells at most; 0: none"));
     table.push_back(number("scheme.strain_rate_floor", "1/s", positive, 1e-3,
                            "strain rate below which the yield stress is regularised"));
-    table.push_back(
-        number("scheme.stress_cap", "1", above_to(0.0, 0.5), 0.25,
-               "largest 2 viscosity dt / (density cell^2) in one step; with linear shapes, pic or flip 0.25 at most"));
+    table.push_back(number("scheme.stress_cap", "1", above_to(0.0, 0.5), 0.25,
+                           "largest 2 viscosity dt / (density cell^2) in one step; with pic or flip 0.25 at most, with "
+                           "linear shapes 0.2"));
     table.push_back(absent(with(number("scheme.still_level", "m", any_number, "known level of a lake at rest (eq. 33)"),
                                 "scheme.preset", {"paper"}),
                            "no still level is used"));

@@ -254,12 +254,19 @@ void DepthAveraged::arrive(const PointSums& points) {
     status_.front = std::sqrt(sums.front2);
 }
 
+/// The velocity step to come, at most. At a start the nodes tell no signal yet. `max_depth`: of the nodes [m].
+double DepthAveraged::next_velocity_dt(double max_depth) const {
+    if (status_.dt > 0.0) return 0.5 * (status_.dt + longest_step());
+    const double start = status_.max_speed_on_map + std::sqrt(flow_.gravity * max_depth);
+    return 0.5 * longest_step(flow_.scheme.cfl, feed_ ? std::max(start, feed_->signal(flow_.gravity)) : start);
+}
+
 /// All that nodes have besides what was deposited on them.
 NodeSums DepthAveraged::raise_surface() {
     const NodeSums sums = timed_("depth", [&] { return depth_pass(flow_, {footprint_depth_, centre_}); });
     mark_margin(flow_);
     timed_("filter", [&] {
-        shock_pass(flow_);
+        shock_pass(flow_, next_velocity_dt(sums.max_depth));
         filter(flow_);
         creep_filter_.pass(flow_, sums.max_depth);
     });

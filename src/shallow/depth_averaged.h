@@ -153,6 +153,7 @@ private:
     double step_length(double until) const;
     double longest_step(double cfl, double signal) const;
     double share_of_ordinary_step() const;
+    double next_velocity_dt(double max_depth) const;
     double update_nodes(double dt);
     void accumulate_grid_update(const GridUpdateSums& sums, double velocity_dt);
     void accumulate_points(const PointSums& sums);

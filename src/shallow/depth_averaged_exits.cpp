@@ -8,6 +8,7 @@
 #include "base/compensated_sum.h"
 #include "base/error.h"
 #include "shallow/depth_averaged.h"
+#include "shallow/shock.h"
 #include "shallow/sides.h"
 
 namespace frana {
@@ -102,6 +103,8 @@ double DepthAveraged::take_in(const Seeds& seeds, const std::vector<Mat2>& gradi
     drift_ = 0.0;
     arrive(transfer_->deposit(flow_, 0.5 * (status_.dt + longest_step())));
     signal_ = std::max(signal_, status_.max_speed_on_map + std::sqrt(flow_.gravity * status_.max_depth));
+    shock_pass(flow_,
+               next_velocity_dt(status_.max_depth));  // with the step that follows from this, as a resumed run has it
     return came.left_energy;
 }
 

@@ -63,15 +63,16 @@ struct Updated {
 /// Otherwise a point's stress would drive it (and the time step) without bound.
 template <class Real>
 Real inertia_of(const Flow& flow, Real mass, Real depth) {
-    return max(mass, 0.5 * flow.density * flow.area * depth);
+    return max(mass, flow.density * flow.area * depth);
 }
 
-/// Depth that a node's inertia is reckoned with. Linear shapes give a node as much force however little of a point's
-/// mass it gets. Depth goes with mass there. What lies on the nodes around counts too.
+/// Depth that a node's inertia is reckoned with at least. Linear shapes give a node as much force however little of a
+/// point's mass it gets. Depth goes with mass there. What lies on the nodes around counts too, and all of it: see
+/// most_viscosity().
 template <class Real>
 Real resisting_depth(const Flow& flow, Index k) {
     Real depth = read<Real>(&flow.nodes.depth[k]);
-    if (flow.scheme.shape != Shape::linear) return depth;
+    if (flow.scheme.shape != Shape::linear) return 0.5 * depth;
     const Index up = flow.grid.stride();
     for (const Index row : {k - up, k, k + up})
         for (Index m = row - 1; m <= row + 1; ++m) depth = max(depth, read<Real>(&flow.nodes.depth[m]));
@@ -377,7 +378,7 @@ private:
             gravity = bed.gravity(g, mx, my);
         }
         Real dx = n.vx + dt * (n.acceleration_x - driving.x), dy = n.vy + dt * (n.acceleration_y - driving.y);
-        bed.climb(n.ex, n.ey, n.at_front, g, gravity, dt, dx, dy);
+        bed.climb(n.ex, n.ey, n.at_front, g, flow.cell, gravity, dt, dx, dy);
         const Real along = dx * bed.bx + dy * bed.by, speed2 = dx * dx + dy * dy;
         const Real kappa = sqrt(1.0 + select(speed2 > 0.0, along * along / speed2, Real{}));
         const Real normal = kCurvature == Curvature::full ? gravity : Real{} + g;

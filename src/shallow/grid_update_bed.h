@@ -3,6 +3,7 @@
 // or not.
 #include "base/simd.h"
 #include "shallow/flow.h"
+#include "shallow/surface_gradient.h"
 
 namespace frana {
 
@@ -36,13 +37,15 @@ constexpr double kRoundOff2 = 1e-28;
 template <class Real, Curvature kCurvature, bool kLinear>
 struct SteepBed {
     Real bx, by, hxx{}, hxy{}, hyy{};
-    const Pair* smooth = nullptr;  ///< read where something climbs or flies
+    const Pair* smooth = nullptr;     ///< read where something climbs or flies
+    const double* surface = nullptr;  ///< read where something climbs [m]
     SteepBed(const Flow& flow, Index k) : bx(read<Real>(&flow.bed.slope_x[k])), by(read<Real>(&flow.bed.slope_y[k])) {
         if constexpr (kCurvature != Curvature::none) {
             hxx = read<Real>(&flow.bed.hxx[k]);
             hxy = read<Real>(&flow.bed.hxy[k]);
             hyy = read<Real>(&flow.bed.hyy[k]);
             smooth = &flow.bed.smooth[k];
+            surface = &flow.nodes.surface[k];
         }
     }
     /// What a velocity (dx, dy) that climbs loses besides, in dt; `weight`: gravity() of the grid update. Where the bed
@@ -50,8 +53,10 @@ struct SteepBed {
     /// climb by z costs g z. A bend shorter than the curvature's length turns nothing. So the part of the slope that
     /// the smoothed bed does not have acts with all of gravity. Otherwise a column would climb a step of slope B at a
     /// cost of g z / (1 + B^2). `at_front`, 1 at margins: the surface there is that of what lies behind. A front leaves
-    /// that on its way up such a step. There the bed's slope counts. This stops a climb and turns none round.
-    void climb(Real ex, Real ey, Real at_front, double g, Real weight, double dt, Real& dx, Real& dy) const {
+    /// that on its way up such a step. There the bed's slope counts. This stops a climb and turns none round. `cell`: of
+    /// the nodes [m].
+    void climb(Real ex, Real ey, Real at_front, double g, double cell, Real weight, double dt, Real& dx,
+               Real& dy) const {
         if constexpr (kCurvature != Curvature::none) {
             const Real zero{}, one = zero + 1.0, up = dx * ex + dy * ey, up_bed = dx * bx + dy * by;
             if (!any((up > 0.0) | (at_front * up_bed > 0.0))) return;
@@ -67,10 +72,14 @@ struct SteepBed {
             const Real rise = dx * cx + dy * cy, square = max(cx * cx + cy * cy, zero + 1e-300);
             const Real whole = (g + share * (weight - g)) / (1.0 + share * share * max(zero, bx * cx + by * cy));
             const Real had = weight / (1.0 + q) * max(zero, ex * cx + ey * cy) / square;
-            const Real lost = select(rise > 0.0, min(dt * max(zero, whole - had), rise / square), zero);
+            const Real most = rise / square, lost = select(rise > 0.0, min(dt * max(zero, whole - had), most), zero);
             const Real left_x = dx - lost * cx, left_y = dy - lost * cy;
             // What stops leaves round-off, which has no direction; friction would start from the speed in that direction.
-            const auto stays = left_x * left_x + left_y * left_y <= kRoundOff2 * (dx * dx + dy * dy);
+            // Most of it is that of the surface's height in its slope. A millionth of the speed is no round-off.
+            const Real unknown = kSurfaceRoundOff / cell * read<Real>(surface);
+            const Real off2 = kRoundOff2 * square + min(unknown * unknown, 1e-12 * square);
+            const auto stays = (rise > 0.0) & (lost >= most) &
+                               (square * (left_x * left_x + left_y * left_y) <= off2 * (dx * dx + dy * dy));
             dx = select(stays, zero, left_x), dy = select(stays, zero, left_y);
         }
     }

@@ -11,8 +11,10 @@ namespace frana {
 /// linear velocities. Per face with velocity jump d < 0, depth h (harmonic mean) and c = sqrt(g h): e = |d| (1 -
 /// limiter), flux = h e (c1 c + c2 e). The limiter fades out where |d| exceeds scheme.shock_gate * c. So the middle of
 /// a bore is not mistaken for a smooth velocity. The sensor grows from e = kap c to 2 kap c, kap = scheme.shock_sensor.
-/// Needs depth, flags and velocity before the grid update. Does nothing when the scheme has no viscosity.
-void shock_pass(Flow& flow);
+/// c1 c + c2 e is cell / (2 velocity_dt) at most: beyond that an explicit step makes energy instead of taking it. A
+/// velocity step of 0 has no bound. Needs depth, flags and velocity before the grid update. Does nothing when the
+/// scheme has no viscosity.
+void shock_pass(Flow& flow, double velocity_dt);
 
 /// Whether the scheme has artificial viscosity at all.
 inline bool has_viscosity(const Scheme& scheme) {

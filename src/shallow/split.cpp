@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mpm/stencil.h"
+
 namespace frana {
 
 /// THEORY, section 11. A point that takes up bed gains mass, not width. Alone in its front it would gather all that
@@ -30,6 +32,16 @@ void Splitter::widen_grown(Flow& flow) const {
     });
 }
 
+namespace {
+
+double most_of_itself(Shape shape) {
+    return shape == Shape::linear  ? Linear::kMostOfItself
+           : shape == Shape::cubic ? Cubic::kMostOfItself
+                                   : Quadratic::kMostOfItself;
+}
+
+}  // namespace
+
 Index Splitter::split(Flow& flow) {
     constexpr double kOff = 1e-9;  // [cells]
     const Scheme& scheme = flow.scheme;
@@ -37,8 +49,11 @@ Index Splitter::split(Flow& flow) {
                              scheme.shape == Shape::linear ? kOff : 0.0};
     return flow.particles.with_real([&](auto real) {
         if (std::isfinite(grown_mass_)) widen_grown<decltype(real)>(flow);
-        return halve_points(flow.grid, flow.active, rules, flow.particles, flow.particles.carried<decltype(real)>(),
-                            halves_, [](Index) { return true; });
+        auto& held = flow.particles.carried<decltype(real)>();
+        const double own = most_of_itself(scheme.shape) / (flow.density * flow.area);
+        return halve_points(
+            flow.grid, flow.active, rules, flow.particles, held, halves_, [](Index) { return true; },
+            [&](Index p) { return held.depth[p] <= own * flow.particles.mass[p]; });
     });
 }
 

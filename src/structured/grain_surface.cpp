@@ -49,14 +49,14 @@ void plain_at_obstacles(StructuredBody& body) {
 
 }  // namespace
 
-void raise_surface(StructuredBody& body) {
+void raise_surface(StructuredBody& body, double velocity_dt) {
     Flow& flow = body.flow;
     finish_deposit(flow);
     if (!body.obstacles.empty()) widen_at_obstacles(body);
     const NodeSums sums = depth_pass(flow, {0.0, Vec2(0, 0)});
     if (!body.obstacles.empty()) level_behind_obstacles(body);
     mark_margin(flow);
-    shock_pass(flow);
+    shock_pass(flow, velocity_dt);
     filter(flow);
     // Next to a face, as to a wall, a lump without a pressure gradient would stay.
     if (body.obstacles.empty()) body.creep_filter.pass(flow, sums.max_depth);

@@ -192,8 +192,8 @@ template <class Real>
     const SteepBed<Real, Curvature::full, false> bed(flow, k);
     const FlatOf<Real> surface = surface_at(flow, k, Real{});
     FlatOf<Real> left = driven;
-    bed.climb(surface.x, surface.y, front_at(flow, k, Real{}), flow.gravity, flow.gravity * grains.own_weight, dt,
-              left.x, left.y);
+    bed.climb(surface.x, surface.y, front_at(flow, k, Real{}), flow.gravity, flow.cell,
+              flow.gravity * grains.own_weight, dt, left.x, left.y);
     return driven + bears * grains.share * (left - driven);
 }
 

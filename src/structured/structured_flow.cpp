@@ -9,6 +9,7 @@
 #include "base/compensated_sum.h"
 #include "base/error.h"
 #include "base/flush_denormals.h"
+#include "mpm/stencil.h"
 
 namespace frana {
 namespace {
@@ -118,7 +119,9 @@ void StructuredFlow::begin_grains() {
 void StructuredFlow::split() {
     const StructuredPoints& q = body_.points;
     const auto may = [&](Index p) { return body_.share * (1.0 - q.damage[p]) == 0.0; };
-    if (halve_points(body_.grid, body_.active, rules_, body_.points, body_.points, halves_, may) > 0) {
+    const double own = Quadratic::kMostOfItself / (body_.density * body_.flow.area);
+    const auto alone = [&](Index p) { return may(p) && q.layer[p] <= own * q.mass[p]; };
+    if (halve_points(body_.grid, body_.active, rules_, body_.points, body_.points, halves_, may, alone) > 0) {
         body_.gone.assign(static_cast<std::size_t>(q.count()), 0);
         sort();
     }
@@ -210,7 +213,7 @@ void StructuredFlow::advance(double until) {
     const StepTimes times = body_.grains ? StepTimes{0.5 * (status_.dt + dt), dt, ahead} : StepTimes{dt, 0.0, ahead};
     timed_("clear", [&] { clear_nodes(body_); });
     timed_("scatter", [&] { scatter(body_); });
-    if (body_.grains) timed_("surface", [&] { raise_surface(body_); });
+    if (body_.grains) timed_("surface", [&] { raise_surface(body_, times.velocity_dt); });
     timed_("nodes", [&] { move_nodes(body_, times); });
     timed_("gather", [&] { gather(body_, dt); });
     status_.tick(dt, until);
@@ -220,7 +223,7 @@ void StructuredFlow::advance(double until) {
 void StructuredFlow::sample() {
     clear_nodes(body_);
     scatter(body_);
-    if (body_.grains) raise_surface(body_);
+    if (body_.grains) raise_surface(body_, 0.0);
     sample_nodes(body_);
     update_totals();
 }

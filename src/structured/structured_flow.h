@@ -203,7 +203,7 @@ void with_kinds(const StructuredBody& body, Work&& work) {
 void clear_nodes(StructuredBody& body);
 void scatter(StructuredBody& body);
 /// After scatter() where there are grains: depth from sub-points, and the free surface (grain_surface.cpp).
-void raise_surface(StructuredBody& body);
+void raise_surface(StructuredBody& body, double velocity_dt);
 void move_nodes(StructuredBody& body, const StepTimes& times);
 void gather(StructuredBody& body, double dt);
 /// The nodes as the particles are now, without a step: `moved`, and the energies of `tallies`.

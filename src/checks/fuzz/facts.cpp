@@ -275,6 +275,7 @@ Facts facts_of(const Scene& scene, const Simulation& simulation, const Claims& c
     } else {
         facts.walls = scene.sides == Sides::wall;
         facts.affine = facts.cancels = true;
+        facts.structured = scene.structure.has_value() && scene.particles.count() > 0;
         learn_bed(scene.bed, facts);
         if (scene.water) learn_water(scene, facts);
     }

@@ -25,6 +25,9 @@ struct Facts {
     double release_energy = 0.0;  ///< that its depth alone could set free [J]
     /// Of release_energy, what the nodes do not have at the start, as they average depths over a cell and more [J].
     double hidden_energy = 0.0;
+    /// Structured particles: stress is by the depth that they carry, so that all of release_energy is there. With grains
+    /// velocities are half a step behind, at frames too.
+    bool structured = false;
     double loose = 0.0;                                                ///< deepest that an erodible bed may sink [m]
     double inflow_speed = 0.0;                                         ///< fastest that comes in later [m/s]
     double highest_inflow = -std::numeric_limits<double>::infinity();  ///< its highest surface [m]

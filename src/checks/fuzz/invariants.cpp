@@ -35,6 +35,25 @@ double near_open_sides(const Facts& facts, const PointStates& points) {
     return sum.value();
 }
 
+/// What the depths of nodes could set free [J].
+double depth_energy(const Facts& facts, const std::vector<NodeState>& nodes) {
+    CompensatedSum sum;
+    for (const NodeState& node : nodes)
+        sum.add(0.5 * facts.density * facts.cell * facts.cell * facts.gravity * node.depth * node.depth);
+    return sum.value();
+}
+
+/// Work of gravity on all that climbs, by half a step more than it has lost [J].
+double half_a_step_up(const Facts& facts, const Snapshot& state) {
+    const PointStates& points = state.points;
+    CompensatedSum sum;
+    for (std::size_t p = 0; p < points.mass.size(); ++p) {
+        const double along = points.speed[p], map2 = points.vx[p] * points.vx[p] + points.vy[p] * points.vy[p];
+        sum.add(points.mass[p] * std::sqrt(std::max(0.0, along * along - map2)));
+    }
+    return 0.5 * state.now.dt * facts.gravity * sum.value();
+}
+
 }  // namespace
 
 const std::vector<std::string>& invariant_names() {
@@ -47,8 +66,9 @@ const std::vector<std::string>& invariant_names() {
 Watch::Watch(const Facts& facts, const Snapshot& start) : facts_(facts), start_(start) {
     mass_ = facts.all_in_points ? sum_of(start.points.mass) : start.now.mass;
     most_mass_ = mass_;
-    highest_ = std::max(facts.highest_rain, facts.highest_inflow), lowest_ = kInfinite;
+    highest_ = std::max(facts.highest_rain, facts.highest_inflow), lowest_ = foot_ = kInfinite;
     at_hand_ = start.now.kinetic + facts.release_energy;
+    if (facts.structured) facts_.hidden_energy = std::max(0.0, facts.release_energy - depth_energy(facts, start.nodes));
     deepest_ = facts.release_depth;
     for (std::size_t p = 0; p < start.points.mass.size(); ++p)
         if (start.points.in_3d[p]) highest_ = std::max(highest_, start.points.z[p]);
@@ -60,7 +80,7 @@ Watch::Watch(const Facts& facts, const Snapshot& start) : facts_(facts), start_(
 void Watch::note_extremes(const Snapshot& state) {
     for (const NodeState& node : state.nodes) {
         if (node.wet) {
-            lowest_ = std::min(lowest_, node.bed);
+            lowest_ = std::min(lowest_, node.bed), foot_ = std::min(foot_, node.foot);
             deepest_ = std::max(deepest_, node.depth);
         }
         fastest_ = std::max(fastest_, node.speed);
@@ -69,6 +89,7 @@ void Watch::note_extremes(const Snapshot& state) {
         for (const double depth : state.points.depth) deepest_ = std::max(deepest_, depth);
     for (const double change : state.points.change)
         if (facts_.affine) change_ = std::max(change_, change);
+    for (const double own : state.points.own) change_ = std::max(change_, own);
     for (const double speed : state.points.speed) fastest_ = std::max(fastest_, speed);
     most_mass_ = std::max(most_mass_, state.now.mass);
     // What trees took within its first step has been fast on the map alone.
@@ -106,7 +127,7 @@ std::optional<Violation> Watch::finite(const Snapshot& state) {
     const auto sample = [&](double value) { bad += !std::isfinite(value); };
     const PointStates& points = state.points;
     for (const auto* array : {&points.x, &points.y, &points.z, &points.vx, &points.vy, &points.speed, &points.mass,
-                              &points.depth, &points.change})
+                              &points.depth, &points.change, &points.own})
         for (const double value : *array) sample(value);
     for (const NodeState& node : state.nodes)
         for (const double value : {node.depth, node.surface, node.vx, node.vy, node.speed}) sample(value);
@@ -186,9 +207,10 @@ std::optional<Violation> Watch::energy(const Snapshot& state) {
             ? facts_.gravity * (moved * (facts_.one_cell_drop + now.bed.deepest + deepest_) + most_mass_ * bent)
             : 0.0;
     const double share = kEnergyShare * (at_hand_ + turned_over_);
+    const double late = facts_.structured ? half_a_step_up(facts_, state) : 0.0;
     return judged("energy", growth,
-                  facts_.hidden_energy + share + uphill + recorded + bends + lifted + exchanged + round_off, state,
-                  "mechanical energy gained beyond the work of gravity [J]");
+                  facts_.hidden_energy + share + uphill + recorded + bends + lifted + exchanged + late + round_off,
+                  state, "mechanical energy gained beyond the work of gravity [J]");
 }
 
 double Watch::beyond(double bound) const {
@@ -201,7 +223,7 @@ std::optional<Violation> Watch::speed(const Snapshot& state) {
     const double uphill = facts_.energy_law ? std::hypot(1.0, slope_uphill()) : 1.0;  // otherwise in `stretch`
     const double wave =
         std::max(start_.fastest(), facts_.inflow_speed) + 2.0 * uphill * std::sqrt(facts_.gravity * deepest_);
-    const double drop = std::max(0.0, highest_ - lowest_) + facts_.drained_drop;
+    const double drop = std::max(0.0, highest_ - foot_) + facts_.drained_drop;
     const double bound = facts_.stretch * facts_.stretch * std::sqrt(wave * wave + 2.0 * facts_.gravity * drop);
     return judged("speed", state.max_speed, (1.0 + beyond(bound)) * bound, state, "speed beyond the energy line [m/s]");
 }

@@ -69,9 +69,14 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   up to the drop of a cell, and the depth, of that mass is allowed. Where later releases are cut out it is not checked.
 ///   3D points have an energy law anywhere, and none of the exceptions above. A run with particles as well has those of
 ///   particles.
+///   Structured particles yield under the weight of the depth that they carry. So what nodes do not have of that depth's
+///   energy at the start may come out. (Seed 20261302, scene 3245: blocks of a pixel and 3.4 m, which nodes have as 0.8
+///   m.) With grains their velocities are half a step behind, at frames too. What climbs has not lost that half step's
+///   work. (Seed 20261201, scene 2504: 2.3 m/s up 63 degrees.)
 /// - speed (particles and water): V^2 <= (1 + kConvergence)^2 stretch^4 ((v0 + 2 s sqrt(g h))^2 + 2 g drop). v0 and the
 ///   highest surface are those of the start. h is the largest depth that exerts pressure: of nodes, or what points
-///   carry. drop goes to the lowest bed so far.
+///   carry. drop goes to the lowest bed so far, and of particles to that of the nodes beside it: it drives the material
+///   before a point gets there (surface_gradient.h). (Seed 20261130, scene 5559: pits of 3500 m a cell beyond a film.)
 ///   stretch is 1 where the model has an energy law. Elsewhere a bend may turn a speed along the map into `stretch`
 ///   times that along the bed. That carries it up by stretch^2 of the height, to fall again.
 ///   The energy line's v0^2 + 2 g drop alone is no bound of a fluid. The tip of a dam break runs at 2 sqrt(g h)
@@ -85,6 +90,10 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   place. It does so up to the bound itself. So it does in the paper preset, which no energy line binds (see
 ///   `energy`). (Seed 888, scene 8148: a column of 138 m. Its outer points run 1.48 times as fast as the bound in four
 ///   steps.)
+///   Points of flip carry the nodes' velocity and what they had beyond it, by (51) of src/shallow/THEORY.md. They move with
+///   the nodes' alone. Where streams meet they keep their own, and take each push that the nodes get. The largest such
+///   part so far stands for that change. (Seed 20261140, scene 334: streams of 3.9 m/s that cross where the nodes have
+///   0.3 m/s.)
 ///   Neither energy nor speed is checked with water's virtual mass. A step takes that from an estimate of what drives
 ///   the water. Particles part from it by what the estimate gets wrong. (Speeds of up to three times the bound have
 ///   been seen.) The energy of the virtual mass, half of it times the slip's square, would not close the budget. That
@@ -151,10 +160,13 @@ private:
     double mass_ = 0.0;                    ///< of the start, compensated [kg]
     double most_mass_ = 0.0;               ///< at a time so far; rain adds to it [kg]
     double highest_ = 0.0, lowest_ = 0.0;  ///< surface of the start, bed so far [m]
+    double foot_ = 0.0;                    ///< lowest bed so far that drives material [m]
     double deepest_ = 0.0;                 ///< so far [m]
     double fastest_ = 0.0;                 ///< point or node so far [m/s]
-    double change_ = 0.0;   ///< of the velocity across a cell at a point, largest so far, with affine transfers [m/s]
-    double at_hand_ = 0.0;  ///< kinetic energy of the start, and what its depth alone could set free [J]
+    /// Of the velocity across a cell at a point, largest so far, with affine transfers. With flip, of what a point has
+    /// beyond its nodes [m/s].
+    double change_ = 0.0;
+    double at_hand_ = 0.0;      ///< kinetic energy of the start, and what its depth alone could set free [J]
     double turned_over_ = 0.0;  ///< largest kinetic and dissipated energy and change of potential so far [J]
     Index points_ = 0;          ///< most so far
     Index most_nodes_ = 0;      ///< with material, where it is not all in points

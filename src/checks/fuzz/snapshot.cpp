@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
 #include "coupling/structured_run.h"
 #include "coupling/walled_particles.h"
+#include "mpm/stencil.h"
 #include "shallow/depth_averaged.h"
 
 namespace frana::fuzz {
@@ -54,7 +56,7 @@ std::vector<NodeState> nodes_of(const Frame& frame) {
     for (Index n = 0; n < depth.count; ++n) {
         if (depth.data[n] == 0.0) continue;
         nodes.push_back({n % frame.grid.nx, n / frame.grid.nx, true, depth.data[n], bed.data[n], surface.data[n],
-                         velocity.data[3 * n], velocity.data[3 * n + 1], speed.data[n]});
+                         velocity.data[3 * n], velocity.data[3 * n + 1], speed.data[n], bed.data[n]});
     }
     return nodes;
 }
@@ -76,6 +78,31 @@ double fastest_of(const Frame& frame, const PointStates& points) {
     return fastest;
 }
 
+/// Velocity of the nodes around a place, before their next update [m/s].
+template <class Shape>
+Vec2 velocity_around(const Flow& flow, double x, double y) {
+    const Shape along(x), up(y);
+    Vec2 sum(0.0, 0.0);
+    for (int j = 0; j < Shape::kNodes; ++j)
+        for (int i = 0; i < Shape::kNodes; ++i) {
+            const Pair& v = flow.nodes.before[flow.grid.at(along.base + i, up.base + j)];
+            sum += along.w[i] * up.w[j] * Vec2(v.x, v.y);
+        }
+    return sum;
+}
+
+Vec2 velocity_around(const Flow& flow, double x, double y) {
+    switch (flow.scheme.shape) {
+        case Shape::linear:
+            return velocity_around<Linear>(flow, x, y);
+        case Shape::quadratic:
+            return velocity_around<Quadratic>(flow, x, y);
+        case Shape::cubic:
+            return velocity_around<Cubic>(flow, x, y);
+    }
+    throw InternalError("unknown shape function");
+}
+
 /// What the depth-averaged flow has to the last bit: places and velocities as they are carried, all nodes in reach.
 void sharpen(const DepthAveraged& simulation, bool steep, Snapshot& shot) {
     const Flow& flow = simulation.flow();
@@ -90,6 +117,10 @@ void sharpen(const DepthAveraged& simulation, bool steep, Snapshot& shot) {
             points.change.push_back(flow.cell * std::sqrt(xx * xx + xy * xy + yx * yx + yy * yy));
         }
     });
+    if (flow.scheme.transfer == Transfer::flip)
+        for (std::size_t p = 0; p < points.mass.size(); ++p)
+            points.own.push_back(
+                (Vec2(points.vx[p], points.vy[p]) - velocity_around(flow, points.x[p], points.y[p])).norm());
     shot.nodes.clear();
     for (const Index tile : flow.active.work)
         for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
@@ -100,8 +131,10 @@ void sharpen(const DepthAveraged& simulation, bool steep, Snapshot& shot) {
             const double along = std::sqrt(motion.vx * motion.vx + motion.vy * motion.vy + vz * vz);
             const bool wet = flow.nodes.flags[k] & kWet;
             if (!wet && flow.nodes.depth[k] == 0.0 && along == 0.0) return;
-            shot.nodes.push_back({i, j, wet, flow.nodes.depth[k], flow.bed.z[k], flow.bed.z[k] + flow.nodes.depth[k],
-                                  motion.vx, motion.vy, along});
+            const double* z = flow.bed.z.data() + k;
+            const double foot = std::min({z[0], z[1], z[-1], z[flow.grid.stride()], z[-flow.grid.stride()]});
+            shot.nodes.push_back(
+                {i, j, wet, flow.nodes.depth[k], z[0], z[0] + flow.nodes.depth[k], motion.vx, motion.vy, along, foot});
         });
 }
 

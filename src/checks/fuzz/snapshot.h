@@ -17,6 +17,7 @@ struct NodeState {
     bool wet = false;
     double depth = 0.0, bed = 0.0, surface = 0.0;  ///< [m]
     double vx = 0.0, vy = 0.0, speed = 0.0;        ///< along the map, and along the bed on steep terrain [m/s]
+    double foot = 0.0;  ///< lowest bed that its surface slopes to: its own, or of a node beside it [m]
 };
 
 /// Points of any model, equal lengths.
@@ -28,6 +29,7 @@ struct PointStates {
     std::vector<double> mass;    ///< [kg]
     std::vector<double> depth;   ///< [m]
     std::vector<double> change;  ///< of the velocity across a cell, of particles; else empty [m/s]
+    std::vector<double> own;     ///< of the velocity, what the nodes around do not have; with flip, else empty [m/s]
     std::vector<double> id;
     std::vector<std::uint8_t> in_3d;  ///< 1: a 3D point, 0: a particle
 
