@@ -7,6 +7,7 @@
 #include <vtkDataArraySelection.h>
 #include <vtkDataSetAttributes.h>
 #include <vtkFieldData.h>
+#include <vtkFloatArray.h>
 #include <vtkIdList.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
@@ -47,6 +48,8 @@ vtkSmartPointer<vtkPolyData> read_polydata(const std::filesystem::path& file) {
 }
 
 std::vector<double> numbers_of(vtkDataArray* array) {
+    if (auto* const floats = vtkFloatArray::SafeDownCast(array))  // most are: many times as fast as tuple by tuple
+        return {floats->GetPointer(0), floats->GetPointer(0) + floats->GetNumberOfValues()};
     std::vector<double> numbers(static_cast<std::size_t>(array->GetNumberOfValues()));
     for (vtkIdType k = 0; k < array->GetNumberOfTuples(); ++k)
         array->GetTuple(k, numbers.data() + k * array->GetNumberOfComponents());

@@ -1,9 +1,8 @@
 // The face of the module.
-#include <vtkSMPTools.h>
-
 #include "base/version.h"
 #include "vtk_io/module/functions.h"
 #include "vtk_io/module/same_build.h"
+#include "vtk_io/vtk_threads.h"
 
 namespace {
 
@@ -16,8 +15,6 @@ const frana::VtkFunctions kFunctions = {FRANA_VERSION " " FRANA_SAME_BUILD, size
 }  // namespace
 
 extern "C" __attribute__((visibility("default"))) const frana::VtkFunctions* frana_vtk_functions() {
-    // Files and pictures are made side by side as it is. VTK's own threads, a few for each short loop, took a twentieth
-    // of a run's time to wake up and fall asleep.
-    vtkSMPTools::SetBackend("Sequential");
+    frana::keep_vtk_to_one_thread();
     return &kFunctions;
 }
