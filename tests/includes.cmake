@@ -2,7 +2,7 @@
 # of them are above its own line: no arrow runs back up. Each of these arrows is in use. Fails on any other include.
 # cmake -DROOT=... -P includes.cmake
 cmake_minimum_required(VERSION 3.22)
-set(packages "nlopt|gdal|ogr|cpl_|proj|vtk|hdf5|H5|CLI/|nlohmann/|benchmark/|EGL/")
+set(packages "nlopt|gdal|ogr|cpl_|proj|vtk|hdf5|H5|libdeflate|CLI/|nlohmann/|benchmark/|EGL/")
 set(rooms)
 set(arrows 0)
 set(floors 0)
@@ -95,9 +95,9 @@ room(src/checks/verify base terrain law/bed law/erosion observe convert mpm scen
 room(src/checks/bench base observe mpm scene shallow solid3d structured coupling)
 room(src/checks/fuzz base terrain observe run scene mpm shallow coupling)
 # Files, pictures, the program.
-room(src/io base terrain observe particles convert scene PACKAGES "gdal|ogr|cpl_|proj|hdf5|H5")
+room(src/io base terrain observe particles convert scene PACKAGES "gdal|ogr|cpl_|proj|hdf5|H5|libdeflate")
 room(vtk_io base terrain observe particles compare scene PACKAGES "vtk")
-room(vtk_io/figures base terrain vtk_io PACKAGES "vtk|EGL/")
+room(vtk_io/figures base terrain vtk_io PACKAGES "vtk|EGL/|libdeflate")
 room(vtk_io/module base vtk_io vtk_io/figures)
 room(src/run/web base terrain observe io PACKAGES "nlohmann/")
 room(src/run/folder base terrain observe convert compare run run/web scene io vtk_io vtk_io/figures PACKAGES "nlohmann/")

@@ -4,7 +4,11 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
+#include <random>
 
 #include "base/error.h"
 #include "catch.h"
@@ -14,6 +18,7 @@
 #include "observe/memory_archive.h"
 #include "read_back.h"
 #include "small_disk.h"
+#include "threads_of_test.h"
 
 using namespace frana;
 using Catch::Matchers::Contains;
@@ -92,6 +97,20 @@ void check_frame(const Frame& frame, const fs::path& file) {
                    read_array(file, name + ("grid/" + field.name)));
     for (const Field& field : frame.particles)
         check_same(field, {static_cast<hsize_t>(field.count)}, read_array(file, name + ("particles/" + field.name)));
+}
+
+/// The filters that a reader needs for an array.
+std::vector<H5Z_filter_t> filters_of(const fs::path& file, const std::string& name) {
+    const hid_t opened = H5Fopen(file.string().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    const hid_t set = H5Dopen2(opened, name.c_str(), H5P_DEFAULT), plist = H5Dget_create_plist(set);
+    std::vector<H5Z_filter_t> filters;
+    for (int k = 0; k < H5Pget_nfilters(plist); ++k)
+        filters.push_back(
+            H5Pget_filter2(plist, static_cast<unsigned>(k), nullptr, nullptr, nullptr, 0, nullptr, nullptr));
+    H5Pclose(plist);
+    H5Dclose(set);
+    H5Fclose(opened);
+    return filters;
 }
 
 /// Every piece of text that stands between `head` and the next `tail`.
@@ -251,4 +270,44 @@ TEST_CASE("Long arrays are deflated, and a state takes back what was written aft
     resumed->observe(second.frame);
     check_frame(first.frame, run.path() / "run.h5");
     check_frame(second.frame, run.path() / "run.h5");
+}
+
+TEST_CASE("Long arrays need no more than HDF5's own filters, and have the same bytes from any threads", "[io][xdmf]") {
+    // Several chunks an array, the last of them in part; noise, flat and empty stretches, and numbers of 4 and 8 bytes.
+    FrameMaker maker(0, 0.0, 70000, FrameMaker::utm(301, 703));
+    auto& mass = maker.particle_numbers("mass");
+    std::fill(mass.begin(), mass.begin() + 40000, 0.25);
+    std::fill(maker.particle_numbers("volume").begin(), maker.particle_numbers("volume").end(), 0.0);
+    std::mt19937_64 random(1);
+    for (double& depth : maker.particle_numbers("depth")) {  // a number of which no byte can be told
+        const auto bits = static_cast<std::uint32_t>(random());
+        float number = 0.0F;
+        std::memcpy(&number, &bits, sizeof number);
+        depth = std::isfinite(number) ? static_cast<double>(number) : 1.0;
+    }
+    std::string first;
+    for (const int threads : {1, 2, 3}) {
+        const Threads of_test(threads);
+        const FreshFolder run;
+        make_xdmf_writer(run.path())->observe(maker.frame);
+        const fs::path file = run.path() / "run.h5";
+        check_frame(maker.frame, file);
+        for (const char* const name : {"/frame_000000/particles/position", "/frame_000000/grid/depth"})
+            CHECK(filters_of(file, name) == std::vector<H5Z_filter_t>{H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE});
+        const std::string bytes = text_of(file);
+        if (threads == 1) first = bytes;
+        CHECK(bytes == first);
+    }
+}
+
+TEST_CASE("Noise takes no more room in run.h5 than it has, and what is flat next to none", "[io][xdmf]") {
+    const FreshFolder run;
+    FrameMaker maker(0, 0.0, 200000, FrameMaker::utm(3, 3));
+    std::fill(maker.particle_numbers("mass").begin(), maker.particle_numbers("mass").end(), 0.25);
+    std::fill(maker.particle_numbers("stress").begin(), maker.particle_numbers("stress").end(), 0.0);
+    make_xdmf_writer(run.path())->observe(maker.frame);
+    // All but mass and stress: 4 float32, of random mantissas of 23 bits, and 5 numbers of eight bytes. A hundredth for
+    // the frames of blocks.
+    const double noise = 200000.0 * (4 * 4 + 5 * 8);
+    CHECK(static_cast<double>(fs::file_size(run.path() / "run.h5")) < 1.01 * noise);
 }

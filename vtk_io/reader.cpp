@@ -7,6 +7,7 @@
 #include <vtkDataArraySelection.h>
 #include <vtkDataSetAttributes.h>
 #include <vtkFieldData.h>
+#include <vtkFloatArray.h>
 #include <vtkIdList.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
@@ -30,10 +31,11 @@ namespace frana {
 namespace {
 
 /// Runs a VTK reader on a file, turning its complaints into a UserError.
-void read_file(vtkXMLReader* reader, const std::filesystem::path& file, const std::function<void()>& choose = {}) {
+void read_file(vtkXMLReader* reader, const std::filesystem::path& file,
+               const std::function<bool(const std::string& array)>& wanted = {}) {
     const UserError unreadable(fmt::format("{}: cannot be read as a VTK file; run the case again", file.string()));
     if (!std::filesystem::exists(file)) throw UserError(file.string() + ": not found; run the case again");
-    if (!read_xml(reader, file, choose)) throw unreadable;
+    if (!read_xml(reader, file, wanted)) throw unreadable;
 }
 
 /// Points and what they make up, every number of a point being that of one.
@@ -46,6 +48,8 @@ vtkSmartPointer<vtkPolyData> read_polydata(const std::filesystem::path& file) {
 }
 
 std::vector<double> numbers_of(vtkDataArray* array) {
+    if (auto* const floats = vtkFloatArray::SafeDownCast(array))  // most are: many times as fast as tuple by tuple
+        return {floats->GetPointer(0), floats->GetPointer(0) + floats->GetNumberOfValues()};
     std::vector<double> numbers(static_cast<std::size_t>(array->GetNumberOfValues()));
     for (vtkIdType k = 0; k < array->GetNumberOfTuples(); ++k)
         array->GetTuple(k, numbers.data() + k * array->GetNumberOfComponents());
@@ -91,18 +95,13 @@ LoadedFrame frame_of(vtkImageData* image) {
 
 LoadedFrame read_image(const std::filesystem::path& file, const std::vector<std::string>& only = {}) {
     vtkNew<vtkXMLImageDataReader> reader;
-    std::vector<std::string> names;
-    read_file(reader, file, [&] {
-        vtkDataArraySelection* const arrays = reader->GetPointDataArraySelection();
-        for (int k = 0; k < arrays->GetNumberOfArrays(); ++k) {
-            const std::string& name = names.emplace_back(arrays->GetArrayName(k));
-            const bool wanted = only.empty() || name == "elevation" || name == "outside" ||
-                                std::find(only.begin(), only.end(), name) != only.end();
-            arrays->SetArraySetting(name.c_str(), wanted ? 1 : 0);
-        }
-    });
+    const auto wanted = [&only](const std::string& name) {
+        return name == "elevation" || name == "outside" || std::find(only.begin(), only.end(), name) != only.end();
+    };
+    only.empty() ? read_file(reader, file) : read_file(reader, file, wanted);
     LoadedFrame frame = frame_of(reader->GetOutput());
-    frame.names = std::move(names);
+    vtkDataArraySelection* const arrays = reader->GetPointDataArraySelection();
+    for (int k = 0; k < arrays->GetNumberOfArrays(); ++k) frame.names.emplace_back(arrays->GetArrayName(k));
     return frame;
 }
 

@@ -4,6 +4,7 @@
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkDataArray.h>
+#include <vtkDataArraySelection.h>
 #include <vtkErrorCode.h>
 #include <vtkExecutive.h>
 #include <vtkNew.h>
@@ -41,9 +42,7 @@ std::string bytes_of(const std::filesystem::path& file) {
 }
 
 /// Every array of the file is of a type that VTK has.
-bool types_are_known(const std::filesystem::path& file) {
-    const std::string text = bytes_of(file);
-    const std::string_view all = text;
+bool types_are_known(std::string_view all) {
     for (std::size_t at = all.find('<'); at != all.npos; at = all.find('<', at + 1)) {
         const std::string_view tag = all.substr(at, all.find('>', at) - at);
         if (tag.rfind("<AppendedData", 0) == 0) return true;  // bytes of any kind follow
@@ -53,10 +52,29 @@ bool types_are_known(const std::filesystem::path& file) {
     return true;
 }
 
+/// The text without the numbers of the points' arrays that are not wanted. VTK's parser goes through all of a text, and
+/// takes most of the time of reading a few arrays.
+std::string without_numbers(const std::string& text, const std::function<bool(const std::string& array)>& wanted) {
+    const std::string head = "<DataArray", name_mark = " Name=\"", tail = "</DataArray>";
+    const std::size_t all = std::min(text.find("</PointData>"), text.size());
+    std::string kept;
+    std::size_t done = 0;
+    for (std::size_t at = text.find(head, text.find("<PointData")); at < all; at = text.find(head, at + 1)) {
+        const std::size_t close = text.find('>', at), name = text.find(name_mark, at) + name_mark.size();
+        if (close >= all || text[close - 1] == '/' || name >= close) continue;
+        if (wanted(text.substr(name, text.find('"', name) - name))) continue;
+        kept.append(text, done, close + 1 - done);
+        done = std::min(text.find(tail, close), all);
+    }
+    return kept.append(text, done, std::string::npos);
+}
+
 }  // namespace
 
-bool read_xml(vtkXMLReader* reader, const std::filesystem::path& file, const std::function<void()>& choose) {
-    if (!types_are_known(file)) return false;
+bool read_xml(vtkXMLReader* reader, const std::filesystem::path& file,
+              const std::function<bool(const std::string& array)>& wanted) {
+    const std::string text = bytes_of(file);
+    if (!types_are_known(text)) return false;
     bool complained = false;
     vtkNew<vtkCallbackCommand> listener;
     listener->SetClientData(&complained);
@@ -68,10 +86,16 @@ bool read_xml(vtkXMLReader* reader, const std::filesystem::path& file, const std
     reader->SetParserErrorObserver(listener);
     if (!reader->CanReadFile(file.string().c_str())) return false;
     reader->SetFileName(file.string().c_str());
+    if (wanted) {
+        reader->SetReadFromInputString(1);
+        reader->SetInputString(without_numbers(text, wanted));
+    }
     try {
-        if (choose) {
+        if (wanted) {
             reader->UpdateInformation();
-            choose();
+            vtkDataArraySelection* const arrays = reader->GetPointDataArraySelection();
+            for (int k = 0; k < arrays->GetNumberOfArrays(); ++k)
+                arrays->SetArraySetting(arrays->GetArrayName(k), wanted(arrays->GetArrayName(k)) ? 1 : 0);
         }
         reader->Update();
     } catch (const std::length_error&) {  // of a block that claims more than any memory has

@@ -1,10 +1,12 @@
 #include "io/hdf5_frame.h"
 
 #include <fmt/core.h>
+#include <omp.h>
 
 #include <type_traits>
 
 #include "base/error.h"
+#include "io/hdf5_packing.h"
 #include "io/hdf5_support.h"
 #include "observe/file_arrays.h"
 
@@ -40,16 +42,12 @@ NumberType number_type() {
     }
 }
 
-/// Long arrays are deflated: most of a grid is where no flow is. Short ones would be longer with the tables of their chunks.
-void deflate(Output& output, hid_t creation, const std::vector<hsize_t>& shape, std::size_t bytes_of_a_number) {
+/// Long arrays are packed: most of a grid is where no flow is. Short ones would be longer with the tables of their chunks.
+bool is_packed(const std::vector<hsize_t>& shape, std::size_t bytes_of_a_number) {
     constexpr hsize_t kShort = hsize_t{1} << 14;  // bytes
     hsize_t bytes = bytes_of_a_number;
     for (const hsize_t length : shape) bytes *= length;
-    if (bytes < kShort) return;
-    const std::vector<hsize_t> chunk = hdf5::piece_of(shape, bytes_of_a_number);
-    output.check(H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data()));
-    output.check(H5Pset_shuffle(creation));
-    output.check(H5Pset_deflate(creation, 1));  // the higher levels take twice the time for a tenth of the bytes
+    return bytes >= kShort;
 }
 
 /// Notes where an array came to lie.
@@ -78,11 +76,15 @@ void put_array(Output& output, hid_t group, const std::string& name, const std::
     const Handle space(output, H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
     const Handle creation(output, H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     output.check(H5Pset_obj_track_times(creation, false));  // the same run gives the same file
-    deflate(output, creation, shape, sizeof(T));
+    const bool packed = is_packed(shape, sizeof(T));
+    if (packed) hdf5::set_packed(output, creation, shape, sizeof(T));
     Handle set(output,
                H5Dcreate2(group, name.c_str(), number_type<T>().file, space, H5P_DEFAULT, creation, H5P_DEFAULT),
                H5Dclose);
-    hdf5::write_whole(output, set, number_type<T>().memory, values);
+    if (packed)
+        hdf5::write_packed(output, set, shape, sizeof(T), values, omp_get_max_threads());
+    else
+        hdf5::write_whole(output, set, number_type<T>().memory, values);
     put_text(output, set, "unit", unit);
     std::string listed;
     for (const auto& component : components) listed += (listed.empty() ? "" : " ") + component;

@@ -57,16 +57,15 @@ void put_numbers(const Access& access, hid_t object, const char* name, const std
     access.check(H5Awrite(attribute, H5T_NATIVE_DOUBLE, numbers.data()));
 }
 
-namespace {
-
-/// The first axis that is more than a formality.
 std::size_t axis_of(const std::vector<hsize_t>& shape) {
     std::size_t axis = 0;
     while (axis + 1 < shape.size() && shape[axis] == 1) ++axis;
     return axis;
 }
 
-/// What follows it, for each of its places.
+namespace {
+
+/// What follows the axis, for each of its places.
 hsize_t bytes_of_a_row(const std::vector<hsize_t>& shape, std::size_t axis, std::size_t bytes_of_a_number) {
     hsize_t row = bytes_of_a_number;
     for (std::size_t n = axis + 1; n < shape.size(); ++n) row *= shape[n];
@@ -75,12 +74,11 @@ hsize_t bytes_of_a_row(const std::vector<hsize_t>& shape, std::size_t axis, std:
 
 }  // namespace
 
-std::vector<hsize_t> piece_of(std::vector<hsize_t> shape, std::size_t bytes_of_a_number) {
-    constexpr hsize_t kPiece = hsize_t{1} << 20;  // bytes
+std::vector<hsize_t> piece_of(std::vector<hsize_t> shape, std::size_t bytes_of_a_number, hsize_t most) {
     if (shape.empty()) return shape;
     const std::size_t axis = axis_of(shape);
     const hsize_t row = bytes_of_a_row(shape, axis, bytes_of_a_number);
-    if (row > 0) shape[axis] = std::min(shape[axis], std::max<hsize_t>(1, kPiece / row));
+    if (row > 0) shape[axis] = std::min(shape[axis], std::max<hsize_t>(1, most / row));
     return shape;
 }
 
@@ -92,7 +90,8 @@ void write_whole(const Access& access, hid_t set, hid_t type, const void* values
     const std::size_t axis = axis_of(shape);
     const hsize_t row = bytes_of_a_row(shape, axis, H5Tget_size(type));
     if (row == 0) return;
-    const hsize_t rows = shape[axis], at_once = piece_of(shape, H5Tget_size(type))[axis];
+    constexpr hsize_t kPiece = hsize_t{1} << 20;  // bytes
+    const hsize_t rows = shape[axis], at_once = piece_of(shape, H5Tget_size(type), kPiece)[axis];
     std::vector<hsize_t> start(shape.size(), 0), count = shape;
     for (hsize_t first = 0; first < rows; first += at_once) {
         start[axis] = first;

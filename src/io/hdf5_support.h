@@ -74,8 +74,12 @@ private:
 void put_text(const Access& access, hid_t object, const char* name, const std::string& text);
 void put_numbers(const Access& access, hid_t object, const char* name, const std::vector<double>& numbers);
 
-/// The shape of the pieces of a dataset that write_whole() writes, in the form of a chunk. All of it where it is empty.
-std::vector<hsize_t> piece_of(std::vector<hsize_t> shape, std::size_t bytes_of_a_number);
+/// The first axis that is more than a formality.
+std::size_t axis_of(const std::vector<hsize_t>& shape);
+
+/// The shape of as many whole rows of a dataset as have at most so many bytes, but one row at least. All of it where it
+/// is empty.
+std::vector<hsize_t> piece_of(std::vector<hsize_t> shape, std::size_t bytes_of_a_number, hsize_t most);
 
 /// Writes a dataset of that type in memory. In pieces: Linux may take single writes of more than 2 MB at a tenth of the
 /// speed. That happens when no large pages are free for its cache (measured: 3 or 33 ms for 12 MB).

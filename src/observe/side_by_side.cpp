@@ -3,8 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <functional>
 #include <utility>
 
@@ -49,18 +47,7 @@ public:
 
 private:
     void for_all(const std::function<void(Observer&)>& work) {
-        std::vector<std::exception_ptr> failed(parts_.size());
-        std::atomic<std::size_t> next{0};
-        const auto some = [&] {
-            for (std::size_t k = next++; k < parts_.size(); k = next++) try {
-                    work(*parts_[k]);
-                } catch (...) {
-                    failed[k] = std::current_exception();
-                }
-        };
-        on_threads(std::min(static_cast<std::size_t>(std::max(threads_, 1)), parts_.size()), some);
-        for (const std::exception_ptr& failure : failed)
-            if (failure) std::rethrow_exception(failure);
+        for_each_on_threads(parts_.size(), threads_, [&](std::size_t k) { work(*parts_[k]); });
     }
 
     std::string name_;

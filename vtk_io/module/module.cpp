@@ -2,6 +2,7 @@
 #include "base/version.h"
 #include "vtk_io/module/functions.h"
 #include "vtk_io/module/same_build.h"
+#include "vtk_io/vtk_threads.h"
 
 namespace {
 
@@ -14,5 +15,6 @@ const frana::VtkFunctions kFunctions = {FRANA_VERSION " " FRANA_SAME_BUILD, size
 }  // namespace
 
 extern "C" __attribute__((visibility("default"))) const frana::VtkFunctions* frana_vtk_functions() {
+    frana::keep_vtk_to_one_thread();
     return &kFunctions;
 }

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/on_threads.h"
 #include "base/version.h"
 #include "compare/deposit.h"
 #include "io/gdal_reader.h"
@@ -260,12 +261,15 @@ Raster as_in_file(const ProductRaster& product, const std::vector<ProductRaster>
     return peak && is_of_flow(product.name) ? without_untouched(product.raster, peak->raster) : product.raster;
 }
 
-void write_rasters(const fs::path& run_dir, const std::vector<ProductRaster>& rasters, const std::string& title) {
+void write_rasters(const fs::path& run_dir, const std::vector<ProductRaster>& rasters, const std::string& title,
+                   int threads) {
     fs::create_directories(run_dir / "rasters");
     const FileTags tags = tags_of(title);
-    for (const ProductRaster& product : rasters)
+    for_each_on_threads(rasters.size(), threads, [&](std::size_t k) {
+        const ProductRaster& product = rasters[k];
         write_geotiff(raster_file(run_dir, product.name), as_in_file(product, rasters), product.unit,
                       product.description, tags);
+    });
 }
 
 std::vector<ProductRaster> read_rasters(const fs::path& run_dir) {

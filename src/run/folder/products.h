@@ -87,7 +87,7 @@ Raster as_in_file(const ProductRaster& product, const std::vector<ProductRaster>
 /// Writes rasters/<name>.tif, as_in_file(). Each has `title` and the software. It has a date when the environment has
 /// SOURCE_DATE_EPOCH. Any other would change the bytes of a run that is resumed. Throws UserError.
 void write_rasters(const std::filesystem::path& run_dir, const std::vector<ProductRaster>& rasters,
-                   const std::string& title);
+                   const std::string& title, int threads = 1);
 
 /// Reads rasters/<name>.tif back, those that are there but `elevation`: zero again where the flow never came and there is
 /// terrain. Throws UserError when a file cannot be read.

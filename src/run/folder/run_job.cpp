@@ -414,7 +414,7 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     if (scene.output.vtk && scene.wider) write_terrain(run_dir, bed);
 
     timed(record.summary, "rasters", [&] {
-        if (scene.output.geotiff) write_rasters(run_dir, rasters, record.title);
+        if (scene.output.geotiff) write_rasters(run_dir, rasters, record.title, threads_for_files());
         if (const std::optional<Raster> covered = ever_covered(rasters)) {
             write_outline(run_dir, *covered, scene.output.footprint_depth);
             remark_on_unnamed_crs(*covered, scene.output.geotiff, record);
