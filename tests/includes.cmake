@@ -97,7 +97,7 @@ room(src/checks/fuzz base terrain observe run scene mpm shallow coupling)
 # Files, pictures, the program.
 room(src/io base terrain observe particles convert scene PACKAGES "gdal|ogr|cpl_|proj|hdf5|H5|libdeflate")
 room(vtk_io base terrain observe particles compare scene PACKAGES "vtk")
-room(vtk_io/figures base terrain vtk_io PACKAGES "vtk|EGL/|libdeflate")
+room(vtk_io/figures base terrain vtk_io PACKAGES "vtk|EGL/")
 room(vtk_io/module base vtk_io vtk_io/figures)
 room(src/run/web base terrain observe io PACKAGES "nlohmann/")
 room(src/run/folder base terrain observe convert compare run run/web scene io vtk_io vtk_io/figures PACKAGES "nlohmann/")

@@ -49,6 +49,7 @@ class Packer {
 public:
     Packer(std::size_t bytes, std::size_t width)
         : bytes_(bytes), width_(width), shuffled_(bytes), compressor_(libdeflate_alloc_compressor(kLevel)) {
+        expect(width == 1 || width == 4 || width == 8, "numbers of a file have one, four or eight bytes");
         if (!compressor_) throw std::bad_alloc();
     }
 

@@ -1,16 +1,16 @@
 #include "vtk_io/figures/png_file.h"
 
 #include <fmt/core.h>
-#include <libdeflate.h>
+#include <png.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPNGReader.h>
 
-#include <cstdint>
-#include <memory>
+#include <array>
+#include <csetjmp>
+#include <cstring>
 #include <new>
 #include <string>
-#include <vector>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -20,57 +20,69 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A number as PNG has it.
-std::string four_bytes(std::uint32_t number) {
-    std::string bytes;
-    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(number >> shift);
-    return bytes;
-}
-
-/// Length, name, data, and the sum of the latter two.
-std::string chunk(const std::string& name, const std::string& data) {
-    const std::string summed = name + data;
-    return four_bytes(static_cast<std::uint32_t>(data.size())) + summed +
-           four_bytes(libdeflate_crc32(0, summed.data(), summed.size()));
-}
-
-/// Rows from the top, each as the differences to the one above it (filter "up"): shaded ground is like that one.
-std::string rows_of(const Pixels& picture) {
-    const std::size_t width = static_cast<std::size_t>(picture.width) * 3;
-    std::string rows;
-    rows.reserve((width + 1) * static_cast<std::size_t>(picture.height));
-    const std::vector<std::uint8_t> nothing(width, 0);
-    const std::uint8_t* above = nothing.data();
-    for (int y = picture.height - 1; y >= 0; --y) {  // ours begin at the lowest
-        constexpr char kUp = 2;
-        const std::uint8_t* const row = picture.rgb.data() + static_cast<std::size_t>(y) * width;
-        rows += kUp;
-        for (std::size_t x = 0; x < width; ++x) rows += static_cast<char>(row[x] - above[x]);
-        above = row;
+/// libpng's file in memory. Its errors jump back into make(): nothing that they jump over may need a destructor.
+class PngMaker {
+public:
+    PngMaker() : png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, this, &fail, &ignore)) {
+        if (png_) info_ = png_create_info_struct(png_);
     }
-    return rows;
-}
+    ~PngMaker() { png_destroy_write_struct(&png_, &info_); }
+    PngMaker(const PngMaker&) = delete;
+    PngMaker& operator=(const PngMaker&) = delete;
 
-/// The format of zlib. The levels below take no less time, the ones above half more for a twentieth of the bytes.
-std::string deflated(const std::string& bytes) {
-    constexpr int kLevel = 2;
-    const std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> compressor(
-        libdeflate_alloc_compressor(kLevel), libdeflate_free_compressor);
-    if (!compressor) throw std::bad_alloc();
-    std::string packed(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()), '\0');
-    packed.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), packed.data(), packed.size()));
-    return packed;
-}
+    bool make(const Pixels& picture) {
+        if (!info_ || setjmp(png_jmpbuf(png_)) != 0) return false;
+        png_set_write_fn(png_, this, &take, nullptr);
+        png_set_IHDR(png_, info_, static_cast<png_uint_32>(picture.width), static_cast<png_uint_32>(picture.height), 8,
+                     PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+        // Shaded ground is like the row above it. Against level 3 without a filter, this takes 0.8 of the bytes in 0.6
+        // of the time.
+        png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
+        png_set_compression_level(png_, 1);
+        png_set_sRGB(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
+        png_write_info(png_, info_);
+        for (int y = picture.height - 1; y >= 0; --y)  // ours begin at the lowest
+            png_write_row(png_, picture.rgb.data() + static_cast<std::size_t>(y) * picture.width * 3);
+        png_write_end(png_, nullptr);
+        return true;
+    }
+    const std::string& bytes() const { return bytes_; }
+    const char* why_not() const { return why_not_.data(); }
+
+private:
+    static void take(png_structp png, png_bytep data, std::size_t length) {
+        static_cast<PngMaker*>(png_get_io_ptr(png))->append(png, data, length);
+    }
+    void append(png_structp png, png_bytep data, std::size_t length) {
+        bool kept = true;
+        try {
+            bytes_.append(reinterpret_cast<const char*>(data), length);
+        } catch (const std::bad_alloc&) {
+            kept = false;
+        }
+        if (!kept) png_error(png, "there is no memory for it");
+    }
+    static void fail(png_structp png, png_const_charp why_not) {
+        auto& here = static_cast<PngMaker*>(png_get_error_ptr(png))->why_not_;
+        std::strncpy(here.data(), why_not, here.size() - 1);
+        png_longjmp(png, 1);
+    }
+    static void ignore(png_structp, png_const_charp) {}
+
+    std::array<char, 200> why_not_{"there is no memory for it"};
+    png_structp png_ = nullptr;
+    png_infop info_ = nullptr;
+    std::string bytes_;
+};
 
 }  // namespace
 
 void write_png(const Pixels& picture, const fs::path& png) {
-    expect(picture.width > 0 && picture.height > 0, "a picture has pixels");
-    const std::string header = four_bytes(static_cast<std::uint32_t>(picture.width)) +
-                               four_bytes(static_cast<std::uint32_t>(picture.height)) +
-                               std::string("\x08\x02\0\0\0", 5);  // bits a colour, RGB, none of the variants
-    write_text(png, "\x89PNG\r\n\x1a\n" + chunk("IHDR", header) + chunk("sRGB", std::string(1, '\0')) +
-                        chunk("IDAT", deflated(rows_of(picture))) + chunk("IEND", ""));
+    PngMaker maker;
+    if (!maker.make(picture))
+        throw UserError(
+            fmt::format("{}: libpng could not make a PNG of the picture: {}", png.string(), maker.why_not()));
+    write_text(png, maker.bytes());
 }
 
 Pixels read_png(const fs::path& png) {
