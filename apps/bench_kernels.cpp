@@ -31,7 +31,7 @@ struct Bed {
     void surface() {
         depth_pass(flow, {0.1, {0.0, 0.0}});
         mark_margin(flow);
-        shock_pass(flow);
+        shock_pass(flow, 0.0);
         filter(flow);
         shoreline(flow);
     }
@@ -81,7 +81,7 @@ void depth_to_shoreline(benchmark::State& state) {
     sweep(state, [](Bed& b) { b.surface(); });
 }
 void shock(benchmark::State& state) {
-    sweep(state, [](Bed& b) { shock_pass(b.flow); });
+    sweep(state, [](Bed& b) { shock_pass(b.flow, 0.0); });
 }
 void sort_by_tile(benchmark::State& state) {
     sweep(state, [](Bed& b) { b.sorter.sort(b.flow.particles, b.flow.grid, {}, b.flow.active); });
