@@ -229,8 +229,6 @@ TEST_CASE("Scenes that once broke an invariant break none", "[fuzz]") {
         {20261130, 23534, "material.rheology.viscosity", "182874.9513840854"},
         {20261130, 41772, "inflow#0.velocity", "59.65731288008794"},
         {20261130, 43104, "scheme.viscosity_quadratic", "2.0"},
-        // The nodes' velocities cancelled, and which of the nodes around lay behind was what was left.
-        {20261130, 21678, "material.bed.viscosity", "0.00011408840801763384"},
         // A climb that stops left the round-off of heights of 1650 m, and friction took that for a direction.
         {20261130, 23176, "material.bed.grain_diameter", "1.2882987306199064e-05"},
         // Points too light to split, alone: their own pressure stretched them again after each cut of their domains.

@@ -60,8 +60,8 @@ std::string without_numbers(const std::string& text, const std::function<bool(co
     std::string kept;
     std::size_t done = 0;
     for (std::size_t at = text.find(head, text.find("<PointData")); at < all; at = text.find(head, at + 1)) {
-        const std::size_t close = text.find('>', at), name = text.find(name_mark, at) + name_mark.size();
-        if (close >= all || text[close - 1] == '/' || name >= close) continue;
+        const std::size_t close = text.find('>', at), mark = text.find(name_mark, at), name = mark + name_mark.size();
+        if (close >= all || text[close - 1] == '/' || mark >= close) continue;
         if (wanted(text.substr(name, text.find('"', name) - name))) continue;
         kept.append(text, done, close + 1 - done);
         done = std::min(text.find(tail, close), all);

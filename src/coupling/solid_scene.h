@@ -8,7 +8,7 @@ namespace frana {
 
 /// What is chosen when a stage begins, from the material there and the stage's keys.
 struct SolidStart {
-    double sound_speed = 0.0;  ///< of fluids, and of sand that has the bed's friction [m/s]
+    double sound_speed = 0.0;  ///< of fluids, and of sand or grains by the bed's friction [m/s]
     double top = 0.0;          ///< elevation where the space ends [m]
     double friction =
         0.0;             ///< inside of sand that has the bed's friction: as large as that of any of its particles [1]

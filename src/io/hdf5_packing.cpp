@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <new>
 #include <numeric>
@@ -19,8 +20,9 @@ namespace {
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "arrays go into the file as they lie in memory");
 
-constexpr hsize_t kChunk = hsize_t{1} << 18;  // bytes
-constexpr int kLevel = 1;                     // the higher ones take twice the time for a tenth of the bytes
+constexpr hsize_t kChunk = hsize_t{1} << 18;                               // bytes
+constexpr std::size_t kLeftOut = std::numeric_limits<std::size_t>::max();  // of a chunk of zeros
+constexpr int kLevel = 1;  // the higher ones take twice the time for a tenth of the bytes
 
 /// Memory that is not set before it is written.
 class Bytes {
@@ -58,15 +60,18 @@ public:
         return 6 + 5 * (bytes_ / kMostStored + 1) + libdeflate_deflate_compress_bound(compressor_.get(), bytes_);
     }
 
-    /// A stream of zlib (RFC 1950). Returns its length.
+    /// A stream of zlib (RFC 1950). Returns its length; 0: the compressor failed.
     std::size_t pack(const unsigned char* chunk, unsigned char* to) {
         const unsigned char* const all = shuffled(chunk);
         const std::size_t noise = count_of_noise(all) * (bytes_ / width_);
         unsigned char* at = to;
         *at++ = 0x78, *at++ = 0x01;  // deflate with a window of 32 kB, level 1
         for (std::size_t n = 0; n < noise; n += kMostStored) at = store(all + n, std::min(kMostStored, noise - n), at);
-        at += libdeflate_deflate_compress(compressor_.get(), all + noise, bytes_ - noise, at,
-                                          libdeflate_deflate_compress_bound(compressor_.get(), bytes_ - noise));
+        const std::size_t last =
+            libdeflate_deflate_compress(compressor_.get(), all + noise, bytes_ - noise, at,
+                                        libdeflate_deflate_compress_bound(compressor_.get(), bytes_ - noise));
+        if (last == 0) return 0;
+        at += last;
         const std::uint32_t sum = libdeflate_adler32(1, all, bytes_);
         for (int shift = 24; shift >= 0; shift -= 8) *at++ = static_cast<unsigned char>(sum >> shift);
         return static_cast<std::size_t>(at - to);
@@ -182,12 +187,14 @@ void write_packed(const Access& access, hid_t set, const std::vector<hsize_t>& s
         on_threads(workers, [&] {
             Packer& packer = packers[worker++];
             for (std::size_t k = next++; k < end; k = next++)
-                lengths[k - first] = chunks.is_empty(k) ? 0 : packer.pack(chunks[k], packed[k - first].data());
+                lengths[k - first] = chunks.is_empty(k) ? kLeftOut : packer.pack(chunks[k], packed[k - first].data());
         });
-        for (std::size_t k = first; k < end; ++k, place[axis] += chunk[axis])
-            if (lengths[k - first] > 0)
-                access.check(
-                    H5Dwrite_chunk(set, H5P_DEFAULT, 0, place.data(), lengths[k - first], packed[k - first].data()));
+        for (std::size_t k = first; k < end; ++k, place[axis] += chunk[axis]) {
+            const std::size_t length = lengths[k - first];
+            if (length == kLeftOut) continue;
+            expect(length > 0, "a compressor fills no more than its bound");
+            access.check(H5Dwrite_chunk(set, H5P_DEFAULT, 0, place.data(), length, packed[k - first].data()));
+        }
     }
 }
 

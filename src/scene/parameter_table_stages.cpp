@@ -20,9 +20,10 @@ void add_laws(Table& table) {
     const char* const law = "stage.law";
     Parameter choice_of_law = make(law, Kind::choice, "", "law of the material in 3D");
     choice_of_law.choices = solid::words();
-    table.push_back(of_3d(choice_of_law,
-                          "bingham or a fluid, by the rheology or the bed law of mud; else sand as steep inside as the "
-                          "bed's friction, or a fluid on a bed without"));
+    table.push_back(
+        of_3d(choice_of_law,
+              "bingham or a fluid, by the rheology or the bed law of mud; else mu_i by a bed law pouliquen, "
+              "sand as steep inside as the bed's friction, or a fluid on a bed without"));
     for (const auto& [key, used_by, needed_by] : solid::shared_keys()) {
         const std::string name = std::string("stage.") + key.name;
         Parameter row = number(name.c_str(), key.unit, key.range, key.meaning);

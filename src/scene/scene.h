@@ -154,7 +154,7 @@ struct SolidStage {
     double cell = 1.0;                   ///< of the 3D grid [m]
     double spacing = 0.5;                ///< of the points at the start [m]
     SolidLaw law;                        ///< of fluids without the bulk modulus, which the speed of sound gives
-    bool of_bed = false;                 ///< the law is sand with the bed's friction; its stiffness follows from sound
+    bool of_bed = false;                 ///< sand or grains by the bed's friction; stiffness follows from sound
     bool fluid_by_drag = false;          ///< the law is a fluid, since the bed law has no friction at rest
     std::optional<double> sound_speed;   ///< of fluids and such sand [m/s]; nothing: chosen when the stage begins
     std::optional<double> top;           ///< elevation where the space ends [m]; nothing: chosen when the stage begins

@@ -256,7 +256,7 @@ private:
         const auto sound_alone = [](const std::string& key) { return key == "sound_speed"; };
         if (grains_of_bed() != nullptr && !scene_.bed_laws() && !given("bed_friction")) {
             refuse_others("mu_i by the bed's friction", sound_alone);
-            return solid::MuI::of([&](const std::string& name) { return of_grains(name); });
+            return solid::MuI::grains([&](const std::string& name) { return of_grains(name); });
         }
         refuse_others("drucker_prager by the bed's friction", sound_alone);
         return solid::DruckerPrager::of({}, std::atan(friction_at_rest(scene_.bed_law)), 0.0);
@@ -275,6 +275,17 @@ private:
 
     /// mu_i has its grains from the stage or from the bed's law.
     bool has_grains() {
+        const char* const numbers[] = {"mu_s", "mu_2", "i0", "grain_diameter", "solid_fraction"};
+        const bool all_given =
+            std::all_of(std::begin(numbers), std::end(numbers), [&](auto* name) { return given(name); });
+        if (scene_.bed_laws() && grains_of_bed() != nullptr && !all_given) {
+            problems_.add(case_.place("material.bed.law"),
+                          "found \"pouliquen\" that varies from place to place, with a stage that takes its numbers",
+                          "expected one mu(I): grains in 3D have the same everywhere",
+                          "give all of stage.mu_s, mu_2, i0, grain_diameter, solid_fraction, or remove what makes "
+                          "material.bed differ");
+            return false;
+        }
         std::string missing;
         for (const char* name : {"mu_s", "mu_2", "grain_diameter"})
             if (!value_of(name)) missing += (missing.empty() ? "" : ", ") + std::string("stage.") + name;

@@ -59,7 +59,7 @@ struct Updated {
     }
 };
 
-/// At the edge of a stencil mass vanishes faster than force. A node that has depth counts half of it at least.
+/// At the edge of a stencil mass vanishes faster than force. A node counts `depth` at least, of resisting_depth().
 /// Otherwise a point's stress would drive it (and the time step) without bound.
 template <class Real>
 Real inertia_of(const Flow& flow, Real mass, Real depth) {

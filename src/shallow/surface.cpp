@@ -380,15 +380,12 @@ void depth_of_four(Flow& flow, const DepthRequest& request, Index k, Index i, In
 /// whose depth is a small part of the front's. Were it taken for the flow's own, drag that grows as depth falls would
 /// hold the front too much. The flow behind would pile up on it. So the depth is that of the mass behind, if that is
 /// more. It is of nodes that the node moves away from, by the cosine of twice the angle. At the sides of a flow and
-/// behind it its edge is thin. What moves by round-off alone has no direction. Nor has what is left where the velocities
-/// of what lies around cancel: it is no front of mass that goes thirty times as fast.
-double depth_at_margin(const double* h, Index up, const Pair* v, double gravity) {
+/// behind it its edge is thin. What moves by round-off alone has no direction.
+double depth_at_margin(const double* h, Index up, const Pair& velocity, double gravity) {
     constexpr double kStill2 = 1e-16;  // of the wave's speed, squared: a metre a year
-    constexpr double kLeft2 = 0.001;   // of the speed of the mass behind, squared
-    const Pair& velocity = *v;
     const double speed2 = velocity.x * velocity.x + velocity.y * velocity.y;
     const double moving2 = std::max(speed2, kStill2 * gravity * *h);
-    double sum = *h, square = *h * *h, behind2 = 0.0;
+    double sum = *h, square = *h * *h;
     for (Index dj = -1; dj <= 1; ++dj)
         for (Index di = -1; di <= 1; ++di) {
             const auto x = static_cast<double>(di), y = static_cast<double>(dj);
@@ -397,13 +394,7 @@ double depth_at_margin(const double* h, Index up, const Pair* v, double gravity)
             if (!(away > 0.0) || !(weight > 0.0)) continue;
             const double near = h[dj * up + di], share = weight / (moving2 * distance2);
             sum += share * near, square += share * near * near;
-            const Pair& other = v[dj * up + di];
-            behind2 = std::max(behind2, other.x * other.x + other.y * other.y);
         }
-    if (kLeft2 * behind2 > moving2) {
-        const double front = moving2 / (kLeft2 * behind2);
-        sum = *h + front * (sum - *h), square = *h * *h + front * (square - *h * *h);
-    }
     return square > *h * sum ? square / sum : *h;
 }
 
@@ -467,7 +458,7 @@ void mark_margin(Flow& flow) {
                     flag |= kMargin;
                     if (flow.scheme.margin)
                         flow.nodes.law_depth[first + i] =
-                            depth_at_margin(depth + i, up, &flow.nodes.before[first + i], flow.gravity);
+                            depth_at_margin(depth + i, up, flow.nodes.before[first + i], flow.gravity);
                 }
                 any |= flag;
                 if (a[2] & bit) flag |= kWideX;

@@ -342,10 +342,8 @@ public:
 
 private:
     static const solid::Elastic& elastic_of(const solid::Elastic& law) { return law; }
-    template <class Granular>
-    static const solid::Elastic& elastic_of(const Granular& law) {
-        return law.elastic;
-    }
+    static const solid::Elastic& elastic_of(const solid::DruckerPrager& law) { return law.elastic; }
+    static const solid::Elastic& elastic_of(const solid::MuI& law) { return law.elastic; }
 
     /// Logarithmic strain under a pressure: K tr(e) = - J p, J = exp(tr(e)), by turns: each errs p / K less. Returns J.
     static double press_solid(const solid::Elastic& law, double p, double* strain) {

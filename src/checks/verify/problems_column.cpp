@@ -165,8 +165,8 @@ double mean_depth(const Mpm3d& flow, double low, double high, double cell) {
 
 /// Plane columns of grains that were simulated one by one. Contact dynamics: Staron and Hinch 2005; Lagree, Staron and
 /// Popinet 2011, J. Fluid Mech. 686, 378; as published with the solvers Gerris and Basilisk. Half the final length, and
-/// mean depths of tenths of it, of both halves, over the first height. Their law is mu(I) = 0.32 + 0.28 / (1 + 0.4 / I), I
-/// with the density of all the material, on a floor that holds them. Of the tallest column the grains fill 4 % more than
+/// mean depths of tenths of it, of both halves, over the first height. Their law is mu(I) = 0.32 + 0.28 / (1 + 0.4 / I).
+/// I has the density of all the material. The floor holds them. Of the tallest column the grains fill 4 % more than
 /// it had.
 struct Grains {
     const char* name;

@@ -8,8 +8,8 @@ namespace frana::solid {
 
 /// Where Drucker and Prager's cone meets Mohr and Coulomb's pyramid: in triaxial compression, in plane strain, or on the
 /// plane that a layer slides on. In plane strain, flow without dilatancy makes the stress across the plane the mean of the
-/// others. Both laws then agree. But planes along which that flow goes on carry sin(phi) of their pressure alone, so that
-/// heaps come to rest at less than phi. In simple shear they carry tan(phi), and phi is the angle of repose.
+/// others. Both laws then agree. But planes of shear then carry sin(phi) of their pressure, and heaps rest at less than phi.
+/// In simple shear they carry tan(phi), and phi is the angle of repose.
 enum class Cone { compression, plane_strain, simple_shear };
 
 /// src/solid3d/THEORY.md (21), (22): sand, soil. It is elastic as above within the cone |s| = alpha (p + p_t) of Drucker

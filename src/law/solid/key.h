@@ -46,8 +46,8 @@ inline Key sound_speed() {
     return {"sound_speed",
             "m/s",
             ranges::positive,
-            "artificial speed of sound of fluids, with a yield stress or without, and of sand where no law is "
-            "named: the density changes by about (speed / sound_speed)^2",
+            "artificial speed of sound of fluids, with a yield stress or without, and of sand or grains where no "
+            "law is named: the density changes by about (speed / sound_speed)^2",
             Missing::none,
             0.0,
             "ten times the larger of the fastest speed and sqrt(2 g depth) when the stage begins"};

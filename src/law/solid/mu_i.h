@@ -5,8 +5,8 @@
 
 namespace frana::solid {
 
-/// src/solid3d/THEORY.md (23), (24): dry grains. They are elastic within a cone that widens with the rate of shear,
-/// |s| / sqrt(2) = mu(I) p (Jop, Forterre and Pouliquen 2006, Nature 441, 727). Flow conserves the volume, and at p = 0 the
+/// src/solid3d/THEORY.md (23), (24): dry grains, elastic within a cone that widens with the rate of shear. Its size is
+/// |s| / sqrt(2) = mu(I) p (Jop, Forterre and Pouliquen 2006, Nature 441, 727). Flow conserves the volume. At p = 0 the
 /// material parts.
 struct MuI {
     static constexpr const char* name = "mu_i";
@@ -30,7 +30,13 @@ struct MuI {
                 poisson_ratio()};
     }
     static MuI of(const Values& value) {
-        MuI law{Elastic::of(value)};
+        MuI law = grains(value);
+        law.elastic = Elastic::of(value);
+        return law;
+    }
+    /// Without its stiffness.
+    static MuI grains(const Values& value) {
+        MuI law;
         law.mu_s = value("mu_s").value_or(law.mu_s), law.mu_2 = value("mu_2").value_or(law.mu_2);
         law.i0 = value("i0").value_or(law.i0);
         law.grain_diameter = value("grain_diameter").value_or(law.grain_diameter);

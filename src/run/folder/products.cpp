@@ -265,7 +265,9 @@ void write_rasters(const fs::path& run_dir, const std::vector<ProductRaster>& ra
                    int threads) {
     fs::create_directories(run_dir / "rasters");
     const FileTags tags = tags_of(title);
-    for_each_on_threads(rasters.size(), threads, [&](std::size_t k) {
+    constexpr std::size_t kMany = 16'000'000;  // pixels; a raster that is being written is held three times
+    const bool large = !rasters.empty() && rasters.front().raster.values.size() > kMany;
+    for_each_on_threads(rasters.size(), large ? 1 : threads, [&](std::size_t k) {
         const ProductRaster& product = rasters[k];
         write_geotiff(raster_file(run_dir, product.name), as_in_file(product, rasters), product.unit,
                       product.description, tags);
