@@ -64,7 +64,7 @@ struct MuI {
     }
     /// |s| after flow of dt under the pressure p, from the trial's |s| = size [Pa]. The rate of flow is that of the end.
     template <class Real>
-    [[gnu::always_inline]] Real left_of(Given<Real> size, Given<Real> p, double dt) const {
+    [[gnu::always_inline]] Real left_of(const Given<Real>& size, const Given<Real>& p, double dt) const {
         const double rooted = std::sqrt(2.0);
         // I sqrt(p) of a stress that flow takes away, 1 Pa of |s|
         const double brisk = grain_diameter * std::sqrt(density / solid_fraction) / (rooted * elastic.shear * dt);
