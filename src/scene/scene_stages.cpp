@@ -249,8 +249,8 @@ private:
         return solid::make(law, value);
     }
 
-    /// Without a law of its own: sand as strong as the bed's friction, or grains with the bed's mu(I). Only their sound is
-    /// a key. Grains have one law everywhere, and need their bed to be as rough.
+    /// Without a law of its own: sand as strong as the bed's friction, or grains with the bed's mu(I). Of their keys the
+    /// speed of sound alone may be given. Where mu(I) varies, or stage.bed_friction stands in its place, it is sand.
     SolidLaw law_of_bed(SolidStage& stage) {
         stage.of_bed = true;
         const auto sound_alone = [](const std::string& key) { return key == "sound_speed"; };

@@ -27,9 +27,9 @@ void PointSums::add(const PointSums& o) {
 }
 
 /// Of a wave from node to node plain points keep nothing. So stress may take all of it in a step, not twice that, or it
-/// grows. With points in the middle of each cell that is at 0.25. Linear shapes give a node force without mass. Of random
-/// points those that are the worst then grow at 0.25 by half in a step, and not at 0.2, if nodes have the inertia of the
-/// deepest around them. (With half of it not at 0.12.)
+/// grows. With points in the middle of each cell that is at 0.25. Linear shapes give a node force without mass. Nodes then
+/// have the inertia of the deepest around them. The worst of random points grow at 0.25 by half in a step, and not at 0.2.
+/// (With half of that inertia not at 0.12.)
 double most_viscosity(const Flow& flow, double velocity_dt) {
     constexpr double kPlain = 0.25, kLinear = 0.2;
     const Scheme& scheme = flow.scheme;
