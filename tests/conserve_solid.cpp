@@ -193,6 +193,60 @@ TEST_CASE("A mirrored 3D scene gives the mirrored flow", "[solid]") {
     for (std::size_t p = 0; p < a.size(); ++p) REQUIRE((a[p] - Vec3(b[p].y(), b[p].x(), b[p].z())).norm() < 1e-9);
 }
 
+namespace {
+
+/// A cylinder of mud as slender as it falls apart before a wall, which only pushes; half is on each side of x = 0, or all
+/// of it that there is beyond x = 0.
+SolidScene cylinder_of_mud(bool whole, bool stuck, const Surface& middle) {
+    constexpr double kRadius = 0.3, kHeight = 0.8, kCell = 0.1, kDensity = 1000.0;
+    const double low = whole ? -1.0 : 0.0, bulk = 4e5;
+    SolidScene s;
+    s.density = kDensity;
+    s.law = solid::Bingham{bulk, 1e5, 500.0, 1500.0};
+    s.grid = verify::grid_around({}, {low, -1.0, 0.0}, {1.0, 1.0, kHeight}, kCell);
+    s.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}, stuck ? Hold::stuck : Hold::free)};
+    if (!whole) s.surfaces.push_back(middle);
+    const double first = whole ? -kRadius : 0.0;
+    verify::for_each_part({first, -kRadius, 0}, {kRadius, kRadius, kHeight}, kCell, 2, [&](const Vec3& x, double v) {
+        if (x.head<2>().norm() < kRadius) s.points.add(x, {0, 0, 0}, kDensity * v);
+    });
+    return s;
+}
+
+/// Of the points beyond x = 0: how far away from it and how high their middle is [m].
+Vec2 middle_of_half(const Mpm3d& flow) {
+    Vec2 sum{0, 0};
+    double mass = 0.0;
+    for (Index p = 0; p < flow.body().points.count(); ++p) {
+        const Vec3 x = flow.position(p);
+        if (x.x() <= 0.0) continue;
+        mass += flow.body().points.mass[p];
+        sum += flow.body().points.mass[p] * Vec2(x.x(), x.z());
+    }
+    return sum / mass;
+}
+
+}  // namespace
+
+TEST_CASE("Half of a scene before its plane of symmetry moves as the whole does", "[solid]") {
+    const bool stuck = GENERATE(false, true);
+    const auto run = [&](bool whole, const Surface& middle) {
+        Mpm3d flow(cylinder_of_mud(whole, stuck, middle));
+        while (flow.status().time < 1.0) flow.advance(1.0);
+        return flow;
+    };
+    const Surface mirror = Surface::symmetry_plane({0, 0, 0}, {1, 0, 0});
+    const Mpm3d whole = run(true, mirror), half = run(false, mirror);
+    const Vec2 exact = middle_of_half(whole), found = middle_of_half(half);
+    INFO("stuck " << stuck << ", found " << found.transpose() << ", whole " << exact.transpose());
+    CHECK((found - exact).norm() < 1e-3);  // a hundredth of a cell
+    CHECK(half.status().mass == Approx(0.5 * whole.status().mass).epsilon(1e-12));
+    // A wall lets it go: what is next to it does not hang on to the other half.
+    const Vec2 before_wall = middle_of_half(run(false, Surface::plane({0, 0, 0}, {1, 0, 0})));
+    INFO("before a wall " << before_wall.transpose());
+    CHECK((before_wall - exact).norm() > 0.02);
+}
+
 TEST_CASE("Points that leave the grid are counted and gone", "[solid]") {
     SolidScene s = lump(solid::Fluid{4e5, 0.0});
     s.surfaces.clear();

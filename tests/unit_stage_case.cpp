@@ -125,6 +125,17 @@ TEST_CASE("A window is closed where the case says so, and where it reaches walls
     CHECK(near.window == std::array<Index, 4>{0, 0, 11, 19});
 }
 
+TEST_CASE("Sides of the terrain that are planes of symmetry are so for points, the window's own are walls",
+          "[stages]") {
+    const std::string edge = "window = [1000, 2000, 1060, 2100]\nclosed = [\"west\", \"north\"]\n";
+    using Sides = std::array<bool, 4>;
+    const Scene wall = scene_of(two + edge + "[boundary]\nsides = \"wall\"\n"),
+                mirror = scene_of(two + edge + "[boundary]\nsides = \"mirror\"\n");
+    for (const Scene* scene : {&wall, &mirror}) CHECK(scene->solid->closed == Sides{true, true, false, true});
+    CHECK(wall.solid->mirrors == Sides{});
+    CHECK(mirror.solid->mirrors == Sides{true, true, false, false});
+}
+
 TEST_CASE("A 3D stage ends where particles follow it", "[stages]") {
     const std::string after = "[[stage]]\nmodel = \"depth_averaged\"\n";
     const SolidStage middle = scene_of(two + west + "until = 12\n" + after).solid.value();

@@ -171,6 +171,8 @@ TEST_CASE("What does not fit a structure is refused in one sentence", "[structur
     CHECK(has(problem_of_structure(structure, "unrolled = true\ncurvature = \"full\"\n"),
               "terrain.unrolled: found true with terrain.curvature = \"full\""));
     CHECK(scene_of(structure).curvature == Curvature::full);
+    CHECK(has(problem_of_structure(structure + "[boundary]\nsides = \"mirror\"\n"),
+              "boundary.sides: found \"mirror\" beside material.structure"));
     CHECK(scene_of(structure, "unrolled = true\n").curvature == Curvature::none);
     CHECK(has(problem_of_structure(structure + "[scheme]\nshape = \"cubic\"\n"), "scheme.shape: found \"cubic\" with"));
     CHECK(has(problem_of_structure("", "unrolled = true\n"), "terrain.unrolled: found true"));

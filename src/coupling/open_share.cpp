@@ -20,7 +20,7 @@ namespace {
 std::array<double, 4> limits_of(const Scene& scene) {
     std::array<double, 4> limits = {-INFINITY, -INFINITY, INFINITY, INFINITY};
     const GridGeometry& g = scene.bed.geometry;
-    if (scene.sides == Sides::wall) limits = {g.x0, g.y0, g.x_max(), g.y_max()};
+    if (are_closed(scene.sides)) limits = {g.x0, g.y0, g.x_max(), g.y_max()};
     if (!scene.solid) return limits;
     const std::array<double, 4> window = window_of(scene);
     for (std::size_t side = 0; side < 4; ++side)

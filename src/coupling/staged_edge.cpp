@@ -38,7 +38,7 @@ void StagedRun::show_points() {
     timed_("edge", [&] {
         const GridGeometry& g = scene_.bed.geometry;
         const MaterialPoints& q = points_->body().points;
-        const bool walls = scene_.sides == Sides::wall;
+        const bool walls = are_closed(scene_.sides);
         const double scale = 1.0 / (scene_.density * g.cell * g.cell);
         std::vector<double>& depth = points_depth_;
         depth.resize(static_cast<std::size_t>(g.size()));

@@ -156,7 +156,7 @@ StructuredScene structured_scene(const Scene& scene) {
     s.scheme = scene.scheme;
     if (!of.unrolled) s.bed = bed_under(scene), s.curved = scene.curvature != Curvature::none;
     s.cfl = of.cfl;
-    if (scene.sides == Sides::wall) add_walls(s.grid, s.obstacles);
+    if (are_closed(scene.sides)) add_walls(s.grid, s.obstacles);
     for (const Barrier& barrier : scene.barriers)
         if (const auto box = obstacle_of(barrier, scene.bed)) s.obstacles.push_back(*box);
     if (!scene.structure) return s;  // all that is released is water
@@ -259,7 +259,7 @@ namespace {
 void set_edges(const Scene& scene, WaterScene& w) {
     using Is = WaterPhase::Side::Is;
     const WaterPhase& of = *scene.water;
-    w.sides.fill(scene.sides == Sides::wall ? WaterSide::wall : WaterSide::open);
+    w.sides.fill(are_closed(scene.sides) ? WaterSide::wall : WaterSide::open);
     if (of.lake.empty()) w.level = of.level;
     for (std::size_t side = 0; side < w.sides.size(); ++side) {
         const WaterPhase::Side& given = of.sides[side];

@@ -308,7 +308,9 @@ void add_scheme(Table& table) {
 
 void add_run(Table& table) {
     table.push_back(
-        choice("boundary.sides", {"open", "wall"}, "open", "open: mass leaves and is counted; wall: it is held back"));
+        choice("boundary.sides", {"open", "wall", "mirror"}, "open",
+               "open: mass leaves and is counted; wall: it is held back; mirror: a plane of symmetry, such as the "
+               "middle of a half model. 3D points can part from a wall, not from a mirror"));
     table.push_back(choice("boundary.holes", {"wall", "open"}, "wall",
                            "nodata inside the terrain: wall: mass is held back; open: it leaves and is counted"));
     table.push_back(required(number("time.end", "s", positive, "simulated time")));

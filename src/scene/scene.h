@@ -30,7 +30,8 @@ namespace frana {
 /// the depth gradient, so lakes do not rest. This is Savage and Hutter's slope-normal theory in map coordinates.
 enum class TerrainModel { shallow, steep, linearised };
 enum class Curvature { none, inertia, full };
-enum class Sides { open, wall };
+enum class Sides { open, wall, mirror };  ///< mirror: a plane of symmetry, which 3D points do not part from
+inline bool are_closed(Sides sides) { return sides != Sides::open; }
 enum class Transfer { tpic, apic, flip, pic };
 enum class Shape { linear, quadratic, cubic };
 enum class Precision { full, single };  ///< of what points carry: float64, float32
@@ -151,6 +152,7 @@ struct SolidStage {
     std::optional<double> until;         ///< from then on all are particles again [s]; nothing: to the end
     std::array<Index, 4> window{};       ///< first and last nodes of the terrain's grid in it: i0, j0, i1, j1
     std::array<bool, 4> closed{};        ///< west, south, east, north: points do not cross these sides
+    std::array<bool, 4> mirrors{};       ///< those of them that are planes of symmetry
     double cell = 1.0;                   ///< of the 3D grid [m]
     double spacing = 0.5;                ///< of the points at the start [m]
     SolidLaw law;                        ///< of fluids without the bulk modulus, which the speed of sound gives

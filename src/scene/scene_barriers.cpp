@@ -143,7 +143,7 @@ private:
         BarrierBox box{vertices.front(), vertices.front()};
         for (const Vec2& p : vertices) box.low = box.low.cwiseMin(p), box.high = box.high.cwiseMax(p);
         const double beyond = 1.0 - share_of_foot(barrier, box, terrain_extent());
-        if (beyond > (case_.word("boundary.sides") == "wall" ? 0.5 : 0.01))
+        if (beyond > (case_.word("boundary.sides") != "open" ? 0.5 : 0.01))
             scene_.log.push_back(
                 fmt::format("{}: {:.0f} % of the foot of {} lie beyond the terrain, where nothing meets it; forces and "
                             "moments are those on the rest; expected terrain under all of it, if they are asked for on "

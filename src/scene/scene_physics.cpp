@@ -80,6 +80,11 @@ Curvature curvature_of(const std::string& word) {
     return word == "inertia" ? Curvature::inertia : Curvature::none;
 }
 
+Sides sides_of(const std::string& word) {
+    if (word == "mirror") return Sides::mirror;
+    return word == "wall" ? Sides::wall : Sides::open;
+}
+
 }  // namespace
 
 void set_physics(const CaseFile& file, Scene& scene) {
@@ -87,7 +92,7 @@ void set_physics(const CaseFile& file, Scene& scene) {
     scene.density = file.number("material.density");
     scene.terrain = terrain_of(file.word("terrain.model"));
     scene.curvature = curvature_of(file.word("terrain.curvature"));
-    scene.sides = file.word("boundary.sides") == "wall" ? Sides::wall : Sides::open;
+    scene.sides = sides_of(file.word("boundary.sides"));
     scene.bed_law = law_of<BedLaw>(file, kBedPlace);
     scene.rheology = law_of<Rheology>(file, kRheologyPlace);
     scene.scheme = scheme_of(file);

@@ -172,13 +172,14 @@ private:
         for (std::size_t side = 0; side < 4; ++side)
             stage.closed[side] = std::find(closed.begin(), closed.end(), sides[side]) != closed.end();
         const GridGeometry& g = scene_.bed.geometry;
-        if (scene_.sides != Sides::wall) return;  // walls of the terrain hold points back as well
+        if (!are_closed(scene_.sides)) return;  // walls of the terrain hold points back as well
         const std::array<Index, 4> wall = {0, 0, g.nx - 1, g.ny - 1};
         for (std::size_t side = 0; side < 4; ++side) {
             // Points go on for a cell beyond an open side, which would be through a wall that is nearer.
-            if (stage.closed[side] || std::abs(stage.window[side] - wall[side]) > 1) continue;
+            if (std::abs(stage.window[side] - wall[side]) > (stage.closed[side] ? 0 : 1)) continue;
             stage.window[side] = wall[side];
             stage.closed[side] = true;
+            stage.mirrors[side] = scene_.sides == Sides::mirror;
         }
     }
 

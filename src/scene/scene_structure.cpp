@@ -40,6 +40,7 @@ public:
                           fmt::format("found {:.6g}", number("dilatancy_angle_deg")),
                           fmt::format("expected at most friction_angle_deg = {:.6g}", number("friction_angle_deg")),
                           "give a smaller angle");
+        refuse_mirrors();
         for (const Barrier& barrier : scene_.barriers) require_box(barrier);
         if (problems_.empty()) remark_widened();
         return structure;
@@ -63,6 +64,14 @@ private:
                         "beyond {:g} their passive pressure makes squeezed ones run away",
                         kSteepest, kSteepest),
             "give a smaller angle and the rest of the strength as cohesion, or earth_pressure = \"hydrostatic\"");
+    }
+
+    /// Sides only push a block, which could then part from its other half.
+    void refuse_mirrors() {
+        if (scene_.sides != Sides::mirror) return;
+        problems_.add(case_.place("boundary.sides"), "found \"mirror\" beside material.structure",
+                      "expected \"open\" or \"wall\": structured particles know no plane of symmetry",
+                      "give \"wall\", or the whole of the scene");
     }
 
     double poisson(double young) {

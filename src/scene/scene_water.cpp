@@ -183,7 +183,7 @@ void remark_on_lake(const CaseFile& file, const WaterPhase& water, Scene& scene)
     }
     std::string text = fmt::format("{}: {:.6g} m floods {:.4g} m2 of the ground with {:.4g} m3, {:.4g} m deep at most",
                                    place, level, lake.nodes * cell * cell, lake.depths * cell * cell, lake.deepest);
-    if (lake.edges > 0.0 && scene.sides == Sides::open)
+    if (lake.edges > 0.0 && !are_closed(scene.sides))
         text += fmt::format("; it meets open sides over {:.4g} m, {}", lake.edges * cell,
                             water.lake.empty() ? "beyond which it is held at that level" : "where it falls out");
     if (lake.frees > 0.0)

@@ -14,7 +14,7 @@ double taken_of_bed(const Scene& scene, const GridGeometry& part, const std::vec
     const GridGeometry& whole = scene.wider ? scene.wider->grid : scene.bed.geometry;
     const NodeBox at = box_of(part, whole).value_or(NodeBox::all(part));
     const auto inside = [&](Index k, Index n) {  // of nodes on walls only a half lies inside
-        return scene.sides == Sides::wall && (k == 0 || k == n - 1) ? 0.5 : 1.0;
+        return are_closed(scene.sides) && (k == 0 || k == n - 1) ? 0.5 : 1.0;
     };
     CompensatedSum sum;
     for (Index j = 0; j < part.ny; ++j)

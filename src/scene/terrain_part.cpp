@@ -20,7 +20,7 @@ void take_corners(const Polygons& polygons, std::vector<Vec2>& points) {
 
 /// Particles alone can go on on a larger part.
 bool may_begin_with_part(const CaseFile& file, const Scene& scene) {
-    if (scene.output.whole_terrain || scene.sides != Sides::open) return false;
+    if (scene.output.whole_terrain || are_closed(scene.sides)) return false;
     for (const char* table : {"stage", "insitu"})
         if (file.count(table) > 0) return false;
     for (Index i = 0; i < file.count("barrier"); ++i)

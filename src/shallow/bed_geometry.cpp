@@ -227,7 +227,7 @@ LazyArray<Pair> smooth_slopes(const Scene& scene, const TileGrid& grid) {
 BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
     BedGeometry bed;
     const Index nx = grid.nx(), ny = grid.ny(), up = grid.stride();
-    const bool wall = scene.sides == Sides::wall;
+    const bool wall = are_closed(scene.sides);
     const std::vector<double> z = filled(scene.bed), raised = walled(scene, z);
     bed.averaging = averaging(scene);
     bed.z = LazyArray<double>(grid.size());

@@ -31,7 +31,7 @@ struct FlowSetup {
 /// The state of a depth-averaged run. Phases are free functions on it (transfer.h, surface.h, grid update.h, split.h).
 struct Flow {
     explicit Flow(const Scene& scene)
-        : Flow({scene.bed.geometry, scene.density, scene.gravity, scene.sides == Sides::wall,
+        : Flow({scene.bed.geometry, scene.density, scene.gravity, are_closed(scene.sides),
                 scene.terrain != TerrainModel::shallow, scene.rheology.index() != 0 || scene.scheme.paper_pressure,
                 scene.scheme},
                make_bed_geometry(scene, TileGrid(scene.bed.geometry))) {

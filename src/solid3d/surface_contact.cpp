@@ -65,8 +65,9 @@ struct Touch {
     int surface;
     Contact contact;
     double least;                ///< speed away from the surface that it requires [m/s]
-    double normal_change = 0.0;  ///< along its normal, never below zero [m/s]
+    double normal_change = 0.0;  ///< along its normal, below zero at planes of symmetry only [m/s]
     Vec3 brake{0, 0, 0};         ///< along the surface [m/s]
+    bool both_ways = false;      ///< a plane of symmetry: `least` is the speed, neither less nor more
 };
 constexpr int kMostTouched = 6;
 
@@ -114,7 +115,9 @@ inline int touched(const SolidBody& body, SurfaceSet near, Index node, const Vec
         if (c.distance > 0.5 * mirror_reach(c.normal) * body.grid.cell()) continue;
         if (all_on_barriers && is_floor(c.normal)) continue;
         const double asked = mixed.dot(c.normal);
-        list[count++] = {s, c, c.distance <= 0.0 ? std::max(asked, 0.0) : asked};
+        const bool both_ways = body.surfaces[static_cast<std::size_t>(s)].symmetry;
+        list[count++] = {s,        c, c.distance <= 0.0 && !both_ways ? std::max(asked, 0.0) : asked, 0.0, Vec3::Zero(),
+                         both_ways};
     }
     return count;
 }
@@ -180,7 +183,8 @@ inline void separate(Touch* list, int count, Vec3& v) {
     constexpr int kTurns = 20;  // a corner of 60 degrees errs by a quarter of the turn before: 1e-12 of the start
     for (int turn = 0; turn < (count > 1 ? kTurns : 1); ++turn)
         for (Touch* t = list; t < list + count; ++t) {
-            const double change = std::max(t->least - v.dot(t->contact.normal), -t->normal_change);
+            const double asked = t->least - v.dot(t->contact.normal);
+            const double change = t->both_ways ? asked : std::max(asked, -t->normal_change);
             t->normal_change += change;
             v += change * t->contact.normal;
         }
@@ -220,7 +224,7 @@ inline bool bent(const SolidBody& body, const Vec3& x, const Touch* list, int co
     for (int n = 0; n < count; ++n) {
         soft[n] = list[n];
         soft[n].normal_change = 0.0;
-        soft[n].least = std::min(soft[n].least, 0.0);
+        if (!soft[n].both_ways) soft[n].least = std::min(soft[n].least, 0.0);
     }
     Vec3 slow = came;
     separate(soft, count, slow);

@@ -23,6 +23,12 @@ Surface Surface::plane(const Vec3& through, const Vec3& normal, Hold hold, doubl
     return s;
 }
 
+Surface Surface::symmetry_plane(const Vec3& through, const Vec3& normal) {
+    Surface s = plane(through, normal);
+    s.symmetry = true;
+    return s;
+}
+
 Surface Surface::ground(Raster bed, Hold hold, double friction) {
     Surface s;
     s.kind = Kind::ground;
@@ -200,8 +206,10 @@ MirrorParticles::MirrorParticles(const std::vector<Surface>& surfaces, SurfaceSe
         if (is_covered(surfaces, all, x, c, cell))
             covered_ = true;
         else
-            list[count++] = {c, surface.hold == Hold::stuck, std::numeric_limits<double>::infinity()};
+            list[count++] = {
+                c, surface.hold == Hold::stuck, std::numeric_limits<double>::infinity(), 1.0, false, surface.symmetry};
     }
+    for (int n = 0; n < count; ++n) list[n].slides = !list[n].symmetry && corner(list, count, n);
     if (count > 0) reflect(list, count, x);
 }
 
@@ -250,16 +258,16 @@ void MirrorParticles::cut_off(MirrorParticle& mirror, const Near& near, const Ve
                                      normal.dot(from) - near.contact.distance - 0.5 * near.thick};
 }
 
-/// Whether surface n meets another one.
+/// Whether surface n meets another one. A plane of symmetry is none: what is near it goes on there.
 bool MirrorParticles::corner(const Near* near, int count, int n) {
     for (int m = 0; m < count; ++m)
-        if (m != n && near[n].contact.normal.dot(near[m].contact.normal) >= kOpposite) return true;
+        if (m != n && !near[m].symmetry && near[n].contact.normal.dot(near[m].contact.normal) >= kOpposite) return true;
     return false;
 }
 
-/// The next surface of a corner that a mirror particle is mirrored in, after those of `turn`.
+/// Where it is in a corner: the next surface that a mirror particle is mirrored in, after those of `turn`.
 void MirrorParticles::slide_along(MirrorParticle& mirror, const Near& near, const Mat3& turn) {
-    if (!mirror.held) mirror.slide[mirror.slides++] = turn.transpose() * near.contact.normal;
+    if (!mirror.held && near.slides) mirror.slide[mirror.slides++] = turn.transpose() * near.contact.normal;
 }
 
 /// Reflects a point in each of the surfaces, and these mirror particles in those listed behind. It does so at most
@@ -275,7 +283,7 @@ void MirrorParticles::reflect(const Near* near, int count, const Vec3& x) {
         mirror.held_above = near[n].bends() ? near[n].contact.distance : 0.0;
         mirror.held = near[n].stuck, mirror.of_barrier = near[n].of_barrier, mirror.share = near[n].share;
         mirror.slides = 0, mirror.cuts = 0;
-        if (corner(near, count, n)) slide_along(mirror, near[n], Mat3::Identity());
+        slide_along(mirror, near[n], Mat3::Identity());
         cut_off(mirror, near[n], x);
         if (n + 1 < count) reflect_in_others(near, count, n, x, mirror, 0);
     }

@@ -38,9 +38,12 @@ struct Surface {
     Hold hold = Hold::free;
     double friction = 0.0;                       ///< Coulomb's coefficient of a free surface [1]
     std::shared_ptr<const SurfaceFriction> law;  ///< in place of the coefficient
+    bool symmetry = false;  ///< of a plane: all goes on beyond it as its mirror image, and holds to it
     std::string name;
 
     static Surface plane(const Vec3& through, const Vec3& normal, Hold hold = Hold::free, double friction = 0.0);
+    /// A plane of symmetry. Half of a symmetric scene before it moves as the whole does.
+    static Surface symmetry_plane(const Vec3& through, const Vec3& normal);
     static Surface ground(Raster bed, Hold hold = Hold::free, double friction = 0.0);
     static Surface barrier(Prism prism, Hold hold = Hold::free, double friction = 0.0);
     /// The field reaches mirror_reach() cells beyond the solid wherever material comes near.
@@ -146,6 +149,8 @@ private:
         double thick;        ///< [m], without end but for barriers
         double share = 1.0;  ///< MirrorParticle::share
         bool of_barrier = false;
+        bool symmetry = false;
+        bool slides = false;  ///< free, and in a corner: see MirrorParticle::without_shear
         bool bends() const { return stuck && thick == std::numeric_limits<double>::infinity(); }
     };
     static constexpr int kMostNear = 4, kMost = 14;

@@ -273,7 +273,7 @@ Facts facts_of(const Scene& scene, const Simulation& simulation, const Claims& c
         learn_particles(scene, staged->particles().flow(), facts);
         if (is_all_in_3d(scene)) forget_particles(facts);
     } else {
-        facts.walls = scene.sides == Sides::wall;
+        facts.walls = are_closed(scene.sides);
         facts.affine = facts.cancels = true;
         facts.structured = scene.structure.has_value() && scene.particles.count() > 0;
         learn_bed(scene.bed, facts);
