@@ -46,7 +46,6 @@ Raster without_gaps(Raster bed) {
 SolidLaw law_of(const SolidStage& stage, double density, const SolidStart& start) {
     const double modulus = density * start.sound_speed * start.sound_speed;
     constexpr double kPoisson = 0.3;  // as sand by its own keys has
-    const double young = modulus * (1.0 + kPoisson) * (1.0 - 2.0 * kPoisson) / (1.0 - kPoisson);
     SolidLaw law = stage.law;
     std::visit(
         [&](auto& chosen) {
@@ -56,11 +55,11 @@ SolidLaw law_of(const SolidStage& stage, double density, const SolidStart& start
         law);
     if (auto* grains = std::get_if<solid::MuI>(&law)) {
         grains->density = density;
-        if (stage.of_bed) grains->elastic = solid::Elastic::of(young, kPoisson);
+        if (stage.of_bed) grains->elastic = solid::Elastic::of_sound(modulus, kPoisson);
         return law;
     }
     if (!stage.of_bed) return law;
-    return solid::DruckerPrager::of(solid::Elastic::of(young, kPoisson), std::atan(start.friction), 0.0);
+    return solid::DruckerPrager::of(solid::Elastic::of_sound(modulus, kPoisson), std::atan(start.friction), 0.0);
 }
 
 /// Cells that a 3D grid has beyond a side. At walls the nodes of points and mirror particles then exist. At open
@@ -248,7 +247,8 @@ SolidScene solid_scene(const Scene& scene, const SolidStart& start) {
             Vec3 normal = Vec3::Zero(), at = Vec3::Zero();
             normal[axis] = side == first ? 1.0 : -1.0;
             at[axis] = window[side];
-            result.surfaces.push_back(Surface::plane(at, normal));
+            result.surfaces.push_back(stage.mirrors[side] ? Surface::symmetry_plane(at, normal)
+                                                          : Surface::plane(at, normal));
             result.surfaces.back().name = names[side];
         }
     }

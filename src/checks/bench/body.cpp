@@ -19,9 +19,9 @@ SolidLaw law_of(BodyLaw law) {
         case BodyLaw::bingham:
             return solid::Bingham{bulk, 5e4, 10.0, 500.0};
         case BodyLaw::drucker_prager: {
-            constexpr double kPoisson = 0.3;  // of the modulus that gives that sound, lambda + 2 G, Young's has a share
-            const double young = bulk * (1.0 + kPoisson) * (1.0 - 2.0 * kPoisson) / (1.0 - kPoisson);
-            return solid::DruckerPrager::of(solid::Elastic::of(young, kPoisson), 30.0 * constants::kPi / 180.0, 0.0);
+            constexpr double kPoisson = 0.3;
+            return solid::DruckerPrager::of(solid::Elastic::of_sound(bulk, kPoisson), 30.0 * constants::kPi / 180.0,
+                                            0.0);
         }
     }
     throw InternalError("unknown law");

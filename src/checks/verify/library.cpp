@@ -29,6 +29,7 @@ const std::vector<Problem>& library() {
                                  rest_problems,
                                  body_problems,
                                  column_problems,
+                                 slump_problems,
                                  mud_problems,
                                  bagnold_problems,
                                  erosion_problems,

@@ -49,6 +49,7 @@ std::vector<Problem> structured_case_problems();    // problems_structured_cases
 std::vector<Problem> strained_particle_problems();  // problems_strained_particle.cpp
 std::vector<Problem> dam_obstacle_problems();       // problems_dam_obstacle.cpp
 std::vector<Problem> mud_problems();                // problems_mud.cpp
+std::vector<Problem> slump_problems();              // problems_slump.cpp
 std::vector<Problem> bagnold_problems();            // problems_bagnold.cpp
 std::vector<Problem> erosion_problems();            // problems_erosion.cpp
 std::vector<Problem> bed_wave_problems();           // problems_bed_waves.cpp

@@ -22,8 +22,7 @@ struct Grains {
 
     static solid::MuI of_stiffness() {
         constexpr double kPoisson = 0.3, modulus = kDensity * kSoundSpeed * kSoundSpeed * kGravity * kThickness;
-        solid::MuI law{
-            solid::Elastic::of(modulus * (1.0 + kPoisson) * (1.0 - 2.0 * kPoisson) / (1.0 - kPoisson), kPoisson)};
+        solid::MuI law{solid::Elastic::of_sound(modulus, kPoisson)};
         law.mu_s = 0.38, law.mu_2 = 0.65, law.i0 = 0.3, law.grain_diameter = 0.3, law.solid_fraction = 0.6;
         law.density = kDensity;
         return law;

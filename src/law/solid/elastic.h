@@ -19,6 +19,10 @@ struct Elastic {
     static Elastic of(double young, double poisson) {
         return {young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), 0.5 * young / (1.0 + poisson)};
     }
+    /// Of the modulus lambda + 2 G [Pa]: density times the square of the speed of sound.
+    static Elastic of_sound(double modulus, double poisson) {
+        return of(modulus * (1.0 + poisson) * (1.0 - 2.0 * poisson) / (1.0 - poisson), poisson);
+    }
     template <class Real>
     [[gnu::always_inline]] SymOf<Real> stress(Real, const Given<Real>* state, const Square<Real>&) const {
         const SymOf<Real> e = SymOf<Real>::read(state);
