@@ -80,8 +80,9 @@ constexpr int kMostTouched = 6;
     Contact found[kMostContacts];
     const Surface& barrier = body.surfaces[static_cast<std::size_t>(s)];
     const int faces = contacts(barrier, x, body.grid.cell(), found);
-    bool thin = false;
-    for (int n = 1; n < faces; ++n) thin |= found[0].normal.dot(found[n].normal) < kOpposite;
+    bool thin = false;  // of any two: the nearest may be the top
+    for (int n = 1; n < faces; ++n)
+        for (int m = 0; m < n; ++m) thin |= found[m].normal.dot(found[n].normal) < kOpposite;
     thin = thin && found[0].distance <= 0.0;
     const MetFaces met =
         thin ? MetFaces{faces, faces} : faces_at_edge(body.surfaces, barrier, x, body.grid.cell(), found, faces);
