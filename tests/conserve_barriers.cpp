@@ -141,6 +141,24 @@ TEST_CASE("What goes over a low barrier is counted", "[barrier]") {
     CHECK(beyond <= over * (1.0 + 1e-12));
 }
 
+// Sand of a tenth of what it needed was pressed to half of its volume without a word.
+TEST_CASE("A solid that moves as fast as its sound is told, and how stiff it ought to be", "[barrier]") {
+    const auto told = [](double young) {
+        Scene scene = coarse_channel(4.0);
+        scene.solid->law = solid::DruckerPrager::of(solid::Elastic::of(young, 0.3), 0.5, 0.0);
+        scene.solid->of_bed = false;
+        StagedRun run(scene);
+        run_to(run, 0.1);
+        const std::vector<std::string> remarks = run.remarks();
+        return std::count_if(remarks.begin(), remarks.end(), [](const std::string& remark) {
+            return remark.find("by the stage's stiffness: the fastest point had") != std::string::npos;
+        });
+    };
+    // Of 1000 kg/m3 and a ratio of 0.3: sound of 8 and 367 m/s, the block has 5 m/s.
+    CHECK(told(5e4) == 1);
+    CHECK(told(1e8) == 0);
+}
+
 TEST_CASE("Particles see a barrier as ground as high as its top", "[barrier]") {
     Scene scene = channel(1.5);
     const Raster bed = with_barriers(scene);
@@ -598,15 +616,20 @@ TEST_CASE("What passes over the buried part of a barrier has not gone over it, n
     CHECK(load.run_up == Approx(1.5 + two.half()).epsilon(1e-9));
 }
 
+// The depth was the height of the highest: a jet of two drops was a layer of eight cells.
 TEST_CASE("What goes over a crest in fewer than four cells is remarked upon, with its depth", "[barrier]") {
-    const auto told = [](double z) {
-        return OntoWall([](double, double) { return 0.0; }, {Vec3(1.8, 2.5, z)}).seen().remarks(0.0);
+    const auto told = [](const std::vector<Vec3>& places) {
+        return OntoWall([](double, double) { return 0.0; }, places).seen().remarks(0.0);
     };
-    const std::vector<std::string> thin = told(1.5);
+    // Two drops on a square of a cell are 0.004 m3 over 0.0625 m2.
+    const std::vector<std::string> thin = told({Vec3(1.8, 2.3, 1.5), Vec3(1.8, 2.4, 2.9)});
     REQUIRE(thin.size() == 1);
-    CHECK(thin.front().find("wall: 0.002 m3 of 3D points went over it, up to 0.563 m deep on its crest, 2.3 cells; "
+    CHECK(thin.front().find("wall: 0.004 m3 of 3D points went over it, up to 0.064 m deep on its crest, 0.26 cells; "
                             "expected 4") == 0);
-    CHECK(told(2.1).empty());
+    std::vector<Vec3> layer;  // deeper than four cells
+    for (int n = 0; n < 224; ++n)
+        layer.emplace_back(1.6 + 0.125 * (n % 4), 2.3 + 0.125 * (n / 4 % 4), 1.07 + 0.125 * (n / 16));
+    CHECK(told(layer) == std::vector<std::string>{});
 }
 
 // It told the volume of all stages with the depth of the points.
@@ -622,7 +645,7 @@ TEST_CASE("The remark on thin flow over a crest tells points and particles apart
     CHECK(both.loads().barriers[0].overtopped == Approx(100.0 + OntoWall::volume));
     const std::vector<std::string> thin = both.remarks(0.0);
     REQUIRE(thin.size() == 1);
-    CHECK(thin.front().find("wall: 0.002 m3 of 3D points went over it, besides 100 m3 of particles, up to 0.563 m") ==
+    CHECK(thin.front().find("wall: 0.002 m3 of 3D points went over it, besides 100 m3 of particles, up to 0.032 m") ==
           0);
     CHECK(with_particles(0.5).remarks(0.0).empty());  // the point meets the wall's face
 }

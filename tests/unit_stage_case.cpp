@@ -2,7 +2,9 @@
 #include "base/constants.h"
 #include "base/error.h"
 #include "catch.h"
+#include "checks/verify/box_mesh.h"
 #include "scene/build_scene.h"
+#include "scene/gap_below.h"
 #include "slope_case.h"
 #include "terrain/distance_field.h"
 
@@ -391,4 +393,37 @@ TEST_CASE("A barrier of any shape comes from a mesh alone, through the reader th
     CHECK(has(problem("outline = \"wall.geojson\"\nheight = 4\norigin = [5, 6, 7]\n"),
               "barrier.0.origin: found without mesh"));
     CHECK(has(problem_of("[[barrier]]\nmesh = \"wall.stl\"\n"), "barrier.0.mesh: found a mesh"));
+}
+
+// Half a metre of flow in a room of a cell below a deck pressed it with 7 MN.
+TEST_CASE("A mesh whose foot hangs over the ground is told with the room below it", "[barrier]") {
+    const auto box = [](double z) { return verify::box_as_mesh({1020, 2040, z}, {1030, 2060, z + 10}, 2.0); };
+    Raster ground = sampled({21, 21, 1000, 2000, 5}, [](double, double) { return 100.0; });
+    const auto gap = [&](double z) { return gap_below(box(z), ground, 0.04, 6.0); };
+    CHECK(gap(98).share == 0.0);
+    CHECK(gap(100).share == 0.0);
+    CHECK(gap(101).share == 1.0);
+    CHECK(gap(101).height == Approx(1.0).epsilon(0.05));    // distances are linear between samples a cell apart
+    CHECK(gap(107).share == 0.0);                           // a bridge
+    for (Index j = 0; j < 21; ++j) ground.at(5, j) = 98.0;  // x = 1025, the middle
+    CHECK(gap(100).height == Approx(2.0).epsilon(0.05));
+    CHECK((gap(100).share > 0.5 && gap(100).share <= 1.0));
+
+    const auto told = [&](double above) {
+        constexpr double high = 115.0;  // of the slope below it, which begins at 110 m
+        const MeshReader reader = [&](const std::filesystem::path&, const MeshSampling&) {
+            const double z = high + above;
+            return MeshField{std::make_shared<DistanceField>(box(z)), Vec3(1020, 2040, z), Vec3(1030, 2060, z + 10)};
+        };
+        return build_scene(
+                   case_of(two + "window = [1000, 2000, 1060, 2100]\ncell = 2.0\n[[barrier]]\nmesh = \"wall.stl\"\n"),
+                   walled_gis(), reader)
+            .log;
+    };
+    const auto found = [](const std::vector<std::string>& log) {
+        return std::count_if(log.begin(), log.end(),
+                             [](const std::string& line) { return has(line, "above the ground over"); });
+    };
+    CHECK(found(told(0.5)) == 1);
+    CHECK(found(told(-9.0)) == 0);
 }

@@ -28,7 +28,7 @@ double share_in_window(const Barrier& barrier, const std::pair<Vec3, Vec3>& box,
 }  // namespace
 
 BarrierWatch::BarrierWatch(const Scene& scene, const Mpm3d& flow, double blur)
-    : density_(scene.density), ramp_(scene.bed.geometry.cell), cell_(flow.body().grid.cell()) {
+    : density_(scene.density), ramp_(scene.bed.geometry.cell), cell_(flow.body().grid.cell()), on_top_(cell_) {
     const std::vector<Surface>& surfaces = flow.body().surfaces;
     for (std::size_t s = 0; s < surfaces.size(); ++s)
         if (surfaces[s].is_barrier()) surfaces_.push_back(static_cast<int>(s));
@@ -177,7 +177,7 @@ void BarrierWatch::sample(const Mpm3d& flow) {
                 place = below;  // outside of it, below what it spans, or before its crest
                 continue;
             }
-            if (in_span) on_top_.add(surface - top, mass);
+            if (in_span && x.z() > top) on_top_.add(x.head<2>(), volume);
             if (place == over) continue;
             if (place == below)
                 load.overtopped += volume, points_over_[n] += volume;
@@ -186,7 +186,7 @@ void BarrierWatch::sample(const Mpm3d& flow) {
             place = over;
         }
         load.reach(reached_.level());
-        over_crest_[n] = std::max(over_crest_[n], on_top_.level());
+        over_crest_[n] = std::max(over_crest_[n], on_top_.largest());
     }
 }
 

@@ -54,8 +54,9 @@ private:
     std::vector<double> over_crest_;   ///< of each: largest depth of points on its top [m]
     std::vector<double> points_over_;  ///< of each: volume of what went over it as points [m3]
     BarrierLoads loads_;
-    RunUp reached_, on_top_;        ///< at one barrier at a time: elevations, and heights over its top
     double density_, ramp_, cell_;  ///< ramp: of a barrier for particles; cell: of points [m]
+    RunUp reached_;                 ///< at one barrier at a time: elevations
+    LayerDepth on_top_;             ///< and what lies above its top
     double placed_ = 0.0;           ///< of points that came to be on top of barriers [m3]
 };
 

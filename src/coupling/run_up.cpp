@@ -21,4 +21,19 @@ double RunUp::level() {
     return reached_.front().first;
 }
 
+void LayerDepth::add(const Vec2& place, double volume) {
+    const auto square = [&](double at) { return static_cast<Index>(std::floor(at / side_)); };
+    parts_.emplace_back(std::pair(square(place.x()), square(place.y())), volume);
+}
+
+double LayerDepth::largest() {
+    std::sort(parts_.begin(), parts_.end());
+    double most = 0.0, volume = 0.0;
+    for (std::size_t n = 0; n < parts_.size(); ++n) {
+        volume = n > 0 && parts_[n].first == parts_[n - 1].first ? volume + parts_[n].second : parts_[n].second;
+        most = std::max(most, volume);
+    }
+    return most / (side_ * side_);
+}
+
 }  // namespace frana

@@ -1,5 +1,5 @@
 #pragma once
-// How high material reaches at a barrier, without its spray.
+// How high material reaches at a barrier, and how deep it lies on top of it, without its spray.
 #include <utility>
 #include <vector>
 
@@ -20,6 +20,21 @@ public:
 private:
     std::vector<std::pair<double, double>> reached_;
     double mass_ = 0.0;
+};
+
+/// Depth of a layer by its volume over a square of the map, whatever flies above it.
+class LayerDepth {
+public:
+    explicit LayerDepth(double side) : side_(side) {}
+    void begin() { parts_.clear(); }
+    /// A point at a place of the map [m], with its volume [m3].
+    void add(const Vec2& place, double volume);
+    /// Of the square that has most of what was added since begin(); 0 without any [m]. Puts it out of order.
+    double largest();
+
+private:
+    double side_;  ///< of a square [m]
+    std::vector<std::pair<std::pair<Index, Index>, double>> parts_;
 };
 
 }  // namespace frana

@@ -491,6 +491,33 @@ void StagedRun::remark_walls(std::vector<std::string>& remarks) const {
     }
 }
 
+/// Points that move as fast as sound in them are pressed together. Of fluids and of sand by the bed the stiffness is a
+/// means, of a law that was given by name it is the case's.
+void StagedRun::remark_sound(std::vector<std::string>& remarks) const {
+    constexpr double kEnough = 0.2;  // of the speed of sound: 4 % of the density
+    const SolidStage& stage = *scene_.solid;
+    const bool fluid = std::visit([](const auto& law) { return law.kAverages; }, stage.law);
+    if (!fluid && !stage.of_bed) {
+        const double sound = std::visit([&](const auto& law) { return law.sound_speed(scene_.density); }, stage.law);
+        const double mach = largest_mach_ * start_.sound_speed / sound;
+        if (mach > kEnough)
+            remarks.push_back(fmt::format(
+                "speed of sound {:.4g} m/s, by the stage's stiffness: the fastest point had {:.2g} of it, so that "
+                "densities err by up to {:.3g} %; a young_modulus {:.3g} times as large would do",
+                sound, mach, 100.0 * mach * mach, mach * mach / (kEnough * kEnough)));
+        return;
+    }
+    remarks.push_back(
+        fmt::format("speed of sound {:.4g} m/s (artificial): the fastest point had {:.2g} of it, so that "
+                    "densities err by up to {:.3g} %{}",
+                    start_.sound_speed, largest_mach_, 100.0 * largest_mach_ * largest_mach_,
+                    largest_mach_ > kEnough ? "; set stage.sound_speed higher" : ""));
+    if (!fluid) return;  // of sand that flew apart the volume says nothing
+    const SolidStatus& s = points_->status();
+    const double rest = s.mass / scene_.density;
+    remarks.back() += fmt::format("; volume {:.4g} of that without pressure", rest > 0.0 ? s.volume / rest : 1.0);
+}
+
 std::vector<std::string> StagedRun::remarks() const {
     std::vector<std::string> remarks = particles_->remarks();
     for (std::string& remark : remarks_on(footings_)) remarks.push_back(std::move(remark));
@@ -517,18 +544,7 @@ std::vector<std::string> StagedRun::remarks() const {
     remark_law(remarks);
     remark_cells(remarks);
     if (const auto piled = map_.remark()) remarks.push_back(*piled);
-    const bool fluid = std::visit([](const auto& law) { return law.kAverages; }, scene_.solid->law);
-    if (fluid || scene_.solid->of_bed) {
-        remarks.push_back(
-            fmt::format("speed of sound {:.4g} m/s (artificial): the fastest point had {:.2g} of it, so that densities "
-                        "err by up to {:.2g} %{}",
-                        start_.sound_speed, largest_mach_, 100.0 * largest_mach_ * largest_mach_,
-                        largest_mach_ > 0.2 ? "; set stage.sound_speed higher" : ""));
-        // Of sand that flew apart the volume says nothing.
-        if (fluid)
-            remarks.back() +=
-                fmt::format("; volume {:.4g} of that without pressure", rest > 0.0 ? s.volume / rest : 1.0);
-    }
+    remark_sound(remarks);
     if (returned_.raised > 0.0)
         remarks.push_back(fmt::format(
             "{:.6g} m3 became particles on ground that barriers or walls in holes raise, and gained height: particles "

@@ -108,6 +108,7 @@ private:
     void sample(double until);
     void find_pieces();
     void remark_walls(std::vector<std::string>& remarks) const;
+    void remark_sound(std::vector<std::string>& remarks) const;
     void remark_law(std::vector<std::string>& remarks) const;
     void remark_cells(std::vector<std::string>& remarks) const;
     void remark_cells_at_barriers(std::vector<std::string>& remarks) const;

@@ -10,6 +10,7 @@
 #include "base/round_number.h"
 #include "scene/barrier_box.h"
 #include "scene/barriers_of_case.h"
+#include "scene/gap_below.h"
 #include "scene/joined_barriers.h"
 #include "scene/scene_parts.h"
 #include "terrain/bed_points.h"
@@ -98,6 +99,7 @@ public:
         if (!each || !scene_.solid) judge_buried(barrier);
         if (each) return add_each(barrier);
         if (is_met) remark_low(barrier);
+        if (is_met && barrier.shape) remark_gap(barrier);
         scene_.barriers.push_back(std::move(barrier));
     }
 
@@ -136,6 +138,20 @@ private:
             fmt::format("{}: {} stands {:.3g} m high, {:.2g} cells of the 3D stage; expected {:g} or more, or the "
                         "forces on its sides and on its top err by a tenth or more; stage.cell = {:g} would do",
                         place(), barrier.name, height, height / cell, kCells, round_number_below(height / kCells)));
+    }
+
+    /// Material between two surfaces less than a few cells apart is pressed by both. In a room of a cell below a deck, half
+    /// a metre of flow pressed the deck with 180 times its weight.
+    void remark_gap(const Barrier& barrier) {
+        constexpr double kFlush = 0.02, kRoom = 3.0;  // [cells]
+        const double cell = scene_.solid->cell;
+        const Gap gap = gap_below(*barrier.shape, scene_.bed, kFlush * cell, kRoom * cell);
+        if (!(gap.share > 0.0)) return;
+        scene_.log.push_back(
+            fmt::format("{}: found the foot of {} up to {:.3g} m above the ground over {:.0f} % of it; expected it in "
+                        "the ground, or {:g} cells of the 3D stage, {:.3g} m, above; what gets into that room is "
+                        "pressed by both, and forces mean nothing; let it reach a cell into the ground",
+                        place(), barrier.name, gap.height, 100.0 * gap.share, kRoom, kRoom * cell));
     }
 
     /// What is beyond the terrain takes no load. Where its sides are walls a barrier across it is drawn into them.
