@@ -253,8 +253,8 @@ TEST_CASE("Patches around a top that are not on it are not written, unless they 
     frame.faces = wall();
     PatchedFace& top = frame.faces.back();
     const auto all = top.impulse.size();
-    top.off_top.assign(all, 0);
-    top.off_top[1] = top.off_top[7] = 1;
+    top.off_face.assign(all, 0);
+    top.off_face[1] = top.off_face[7] = 1;
     top.impulse[7] = {0.0, 0.0, 5.0};
     make_barrier_writer(folder.path(), {{std::nullopt, 1.5}}, floor_of_10())->observe(frame);
     const auto faces = test::polydata(folder.path() / "barriers" / "barriers_000000.vtp");

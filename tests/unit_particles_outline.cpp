@@ -1,8 +1,8 @@
 #include <random>
 
 #include "catch.h"
-#include "particles/outline_area.h"
 #include "release_maker.h"
+#include "terrain/outline_area.h"
 
 using namespace frana;
 using namespace release_maker;

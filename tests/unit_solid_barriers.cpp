@@ -345,15 +345,42 @@ TEST_CASE("Patches of a face tell places apart, and a face's moment is about any
     CHECK(FaceLedger::moment_about(front, {2, 4.2, 1.1}).norm() < 1e-12);
 }
 
+// Squares over the sloping top and in the ground counted too: three times the side's area.
+TEST_CASE("Squares of a wall on a slope have the area that its faces have, also askew", "[solid]") {
+    const auto ground = [](double x, double y) { return 0.4 * x + 0.2 * y; };
+    const Raster bed = sampled({21, 21, -2, -2, 1.0}, ground),
+                 top = sampled({21, 21, -2, -2, 1.0}, [&](double x, double y) { return ground(x, y) + 2.0; });
+    const double length = 12.0, width = 2.0;
+    const Vec2 along(0.8, 0.6), across(-0.6, 0.8), from(3.0, 2.0), to = from + length * along;
+    const Polygons outline = ring({from, to, to + width * across, from + width * across});
+    const FaceLedger ledger({Surface::ground(bed), Surface::barrier(Prism(outline, top))}, {-2, -2, -4}, {18, 18, 14},
+                            0.5);
+    const auto area = [&](int face) {
+        const Patches& squares = ledger.face(1, face).patches;
+        double sum = 0.0;
+        for (std::size_t n = 0; n < squares.area.size(); ++n) sum += squares.off_face[n] ? 0.0 : squares.area[n];
+        return sum;
+    };
+    // A quarter at least: the rims' squares may count up to that in excess, here a quarter of half of them.
+    const double excess = 0.25 * 0.5 * 0.25 * 2.0 * length / 0.5;
+    for (const int side : {0, 2}) {
+        CHECK(area(side) >= 2.0 * length * (1.0 - 1e-9));
+        CHECK(area(side) <= 2.0 * length + excess);
+    }
+    CHECK(area(4) >= width * length * (1.0 - 1e-9));
+    CHECK(area(4) <= width * length + 2.0 * excess);
+}
+
 TEST_CASE("Squares in the bend of an L are not of its top", "[solid]") {
     const FaceLedger ledger({Surface::barrier(Prism(l_shape(), 2.0))}, {-1, -1, -1}, {8, 8, 7}, 0.5);
     const Face& top = ledger.face(0, 6);
     REQUIRE(top.patches.count == std::array<Index, 2>{12, 12});
-    REQUIRE(top.patches.off_top.size() == 144);
+    REQUIRE(top.patches.off_face.size() == 144);
     for (Index row = 0; row < 12; ++row)
         for (Index column = 0; column < 12; ++column)
-            CHECK(bool(top.patches.off_top[static_cast<std::size_t>(row * 12 + column)]) == (row >= 4 && column >= 4));
-    CHECK(ledger.face(0, 0).patches.off_top.empty());
+            CHECK(bool(top.patches.off_face[static_cast<std::size_t>(row * 12 + column)]) == (row >= 4 && column >= 4));
+    const Patches& side = ledger.face(0, 0).patches;
+    CHECK(std::count(side.off_face.begin(), side.off_face.end(), 1) == 0);
     // A wall of a twentieth of a square, askew: squares that it passes are on it, however little it covers of them.
     const Polygons thin = ring({{0.1, 0.2}, {6.1, 4.2}, {6.1 - 0.014, 4.2 + 0.021}, {0.1 - 0.014, 0.2 + 0.021}});
     const FaceLedger askew({Surface::barrier(Prism(thin, 2.0))}, {-1, -1, -1}, {8, 8, 7}, 0.5);
@@ -362,7 +389,7 @@ TEST_CASE("Squares in the bend of an L are not of its top", "[solid]") {
         const Vec2 at = (Vec2(0.1, 0.2) + t * Vec2(6, 4) - rim.origin.head<2>()) / rim.size;
         const auto square = static_cast<std::size_t>(at.y()) * static_cast<std::size_t>(rim.count[0]) +
                             static_cast<std::size_t>(at.x());
-        CHECK_FALSE(rim.off_top[square]);
+        CHECK_FALSE(rim.off_face[square]);
     }
-    CHECK(std::count(rim.off_top.begin(), rim.off_top.end(), 1) > 60);
+    CHECK(std::count(rim.off_face.begin(), rim.off_face.end(), 1) > 60);
 }

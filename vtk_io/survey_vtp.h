@@ -2,7 +2,7 @@
 // The simulated and the surveyed extent as ParaView's files, draped over the terrain.
 #include <filesystem>
 
-#include "particles/outline_area.h"
+#include "terrain/outline_area.h"
 #include "terrain/raster.h"
 
 namespace frana {

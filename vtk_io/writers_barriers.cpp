@@ -28,10 +28,10 @@ Place moved(const Place& from, const Place& right, double a, const Place& up, do
 
 double dot(const Place& a, const Place& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Patches around a top that are not on it, and had no force, are not shown.
+/// Patches that are not on the face, and had no force, are not shown.
 bool shown(const PatchedFace& face, std::size_t square) {
     const Place& given = face.impulse[square];
-    return face.off_top.empty() || !face.off_top[square] || dot(given, given) > 0.0;
+    return face.off_face.empty() || !face.off_face[square] || dot(given, given) > 0.0;
 }
 
 class BarrierWriter final : public Observer {

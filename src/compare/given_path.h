@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "particles/outline_area.h"
+#include "terrain/outline_area.h"
 #include "terrain/raster.h"
 
 namespace frana {

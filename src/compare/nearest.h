@@ -2,7 +2,7 @@
 // Distance from any point to a set of rings.
 #include <memory>
 
-#include "particles/outline_area.h"
+#include "terrain/outline_area.h"
 
 namespace frana {
 

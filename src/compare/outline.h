@@ -1,6 +1,6 @@
 #pragma once
 // Extents as closed outlines in map coordinates, and how far two outlines lie apart.
-#include "particles/outline_area.h"
+#include "terrain/outline_area.h"
 #include "terrain/raster.h"
 
 namespace frana {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "particles/outline_area.h"
+#include "terrain/outline_area.h"
 #include "terrain/raster.h"
 
 namespace frana {

@@ -1,5 +1,5 @@
 #pragma once
-#include "particles/outline_area.h"
+#include "terrain/outline_area.h"
 
 namespace frana {
 

@@ -220,7 +220,7 @@ std::vector<PatchedFace> BarrierWatch::patched(const Mpm3d& flow) const {
             PatchedFace& face = faces.emplace_back();
             face.barrier = static_cast<Index>(n), face.face = static_cast<Index>(f);
             face.size = patches.size, face.count = patches.count, face.area = patches.area;
-            face.off_top = patches.off_top;
+            face.off_face = patches.off_face;
             for (int k = 0; k < 3; ++k) {
                 const auto c = static_cast<std::size_t>(k);
                 face.corner[c] = patches.origin[k], face.right[c] = patches.right[k], face.up[c] = patches.up[k];

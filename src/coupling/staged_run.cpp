@@ -491,20 +491,21 @@ void StagedRun::remark_walls(std::vector<std::string>& remarks) const {
     }
 }
 
-/// Points that move as fast as sound in them are pressed together. Of fluids and of sand by the bed the stiffness is a
+/// Points that move nearly at the speed of sound are pressed together. Of fluids and of sand by the bed the stiffness is a
 /// means, of a law that was given by name it is the case's.
 void StagedRun::remark_sound(std::vector<std::string>& remarks) const {
     constexpr double kEnough = 0.2;  // of the speed of sound: 4 % of the density
     const SolidStage& stage = *scene_.solid;
     const bool fluid = std::visit([](const auto& law) { return law.kAverages; }, stage.law);
     if (!fluid && !stage.of_bed) {
-        const double sound = std::visit([&](const auto& law) { return law.sound_speed(scene_.density); }, stage.law);
-        const double mach = largest_mach_ * start_.sound_speed / sound;
+        const double sound_speed =
+            std::visit([&](const auto& law) { return law.sound_speed(scene_.density); }, stage.law);
+        const double mach = largest_mach_ * start_.sound_speed / sound_speed;
         if (mach > kEnough)
             remarks.push_back(fmt::format(
                 "speed of sound {:.4g} m/s, by the stage's stiffness: the fastest point had {:.2g} of it, so that "
                 "densities err by up to {:.3g} %; a young_modulus {:.3g} times as large would do",
-                sound, mach, 100.0 * mach * mach, mach * mach / (kEnough * kEnough)));
+                sound_speed, mach, 100.0 * mach * mach, mach * mach / (kEnough * kEnough)));
         return;
     }
     remarks.push_back(

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "particles/outline_area.h"
 #include "particles/release.h"
+#include "terrain/outline_area.h"
 
 namespace frana {
 

@@ -7,9 +7,9 @@
 
 #include "base/error.h"
 #include "law/catalogue.h"
-#include "particles/outline_area.h"
 #include "scene/nodes_of_place.h"
 #include "scene/stage_reach.h"
+#include "terrain/outline_area.h"
 #include "terrain/part_of.h"
 
 namespace frana {

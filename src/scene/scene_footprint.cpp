@@ -6,8 +6,8 @@
 
 #include "base/error.h"
 #include "particles/generate.h"
-#include "particles/outline_area.h"
 #include "scene/scene_parts.h"
+#include "terrain/outline_area.h"
 
 namespace frana {
 namespace {

@@ -9,11 +9,11 @@
 #include "base/discharge.h"
 #include "law/bed/normal_flow.h"
 #include "particles/generate.h"
-#include "particles/outline_area.h"
 #include "scene/inflow_facts.h"
 #include "scene/inflow_table.h"
 #include "scene/remarks.h"
 #include "scene/scene_parts.h"
+#include "terrain/outline_area.h"
 
 namespace frana {
 namespace {

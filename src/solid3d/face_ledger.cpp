@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "terrain/outline_area.h"
+
 namespace frana {
 namespace {
 
 Patches squares(const Vec3& origin, const Vec3& right, const Vec3& up, const Vec2& length, double size) {
-    Patches p{origin, right, up, size, {}, {}, {}, {}, {}};
+    Patches p{origin, right, up, size, {}, {}, {}, {}, {}, {}};
     for (std::size_t n = 0; n < 2; ++n) {
         p.extent[n] = std::max(0.0, length[static_cast<Eigen::Index>(n)] / size);
         p.count[n] = std::max<Index>(1, static_cast<Index>(std::ceil(p.extent[n] - 1e-9)));
@@ -25,8 +27,13 @@ Patches of_prism(const Prism& prism, int number, const Vec3& low, const Vec3& hi
     if (number == prism.top_face())
         return squares({from.x(), from.y(), most.z()}, {1, 0, 0}, {0, 1, 0}, (to - from).head<2>(), cell);
     const Prism::Edge& edge = prism.edges()[static_cast<std::size_t>(number)];
-    return squares({edge.from.x(), edge.from.y(), from.z()}, {edge.along.x(), edge.along.y(), 0.0}, {0, 0, 1},
-                   {edge.length, to.z() - from.z()}, cell);
+    Patches side = squares({edge.from.x(), edge.from.y(), from.z()}, {edge.along.x(), edge.along.y(), 0.0}, {0, 0, 1},
+                           {edge.length, to.z() - from.z()}, cell);
+    for (Index column = 0; column < side.count[0]; ++column) {
+        const double middle = std::min((static_cast<double>(column) + 0.5) * cell, edge.length);
+        side.tops.push_back((prism.top_at(edge.from + middle * edge.along) - from.z()) / cell);
+    }
+    return side;
 }
 
 /// Of a shape: its box's sides, onto which its surface is projected.
@@ -35,21 +42,6 @@ Patches of_shape(const DistanceField& shape, int number, double cell) {
     const int axis = number / 2, a = (axis + 1) % 3, b = (axis + 2) % 3;
     const Vec3 size = most - least;
     return squares(least, Vec3::Unit(a), Vec3::Unit(b), {size[a], size[b]}, cell);
-}
-
-/// Whether an edge goes through a rectangle in plan (Liang and Barsky 1984).
-bool passes(const Prism::Edge& edge, const Vec2& low, const Vec2& high) {
-    double from = 0.0, to = edge.length;
-    for (int axis = 0; axis < 2; ++axis) {
-        const double way = edge.along[axis], at = edge.from[axis];
-        if (way == 0.0) {
-            if (at < low[axis] || at > high[axis]) return false;
-            continue;
-        }
-        const double a = (low[axis] - at) / way, b = (high[axis] - at) / way;
-        from = std::max(from, std::min(a, b)), to = std::min(to, std::max(a, b));
-    }
-    return from < to;
 }
 
 }  // namespace
@@ -76,6 +68,10 @@ FacePart Patches::around(const Vec3& x, double reach, const std::vector<Surface>
         else
             part.to[n] = std::min(part.to[n], edge);
     }
+    if (!tops.empty()) {
+        const auto column = static_cast<Index>(std::clamp(at[0], 0.0, static_cast<double>(count[0] - 1)));
+        part.to[1] = std::min(part.to[1], tops[static_cast<std::size_t>(column)]);
+    }
     for (std::size_t n = 0; n < 2; ++n) {
         part.from[n] = std::clamp(part.from[n], 0.0, extent[n]);
         part.to[n] = std::clamp(part.to[n], part.from[n], extent[n]);
@@ -83,31 +79,44 @@ FacePart Patches::around(const Vec3& x, double reach, const std::vector<Surface>
     return part;
 }
 
-void Patches::measure(const std::vector<Surface>& others) {
-    constexpr double kLeast = 0.25;
-    area.clear();
+void Patches::take_areas(const std::vector<double>& shares) {
+    constexpr double kLeast = 0.25, kNone = 1e-6;  // of a square; what only touches is not on it
+    area.clear(), off_face.clear();
+    for (const double share : shares) {
+        area.push_back(std::max(kLeast, share) * size * size);
+        off_face.push_back(share <= kNone);
+    }
+}
+
+std::vector<double> Patches::shares_among(const std::vector<Surface>& others) const {
+    std::vector<double> shares;
     for (Index row = 0; row < count[1]; ++row)
         for (Index column = 0; column < count[0]; ++column) {
             const double a = static_cast<double>(column) + 0.5, b = static_cast<double>(row) + 0.5;
             const FacePart part = around(origin + size * (a * right + b * up), 0.5 * size, others);
-            const double share = (part.to[0] - part.from[0]) * (part.to[1] - part.from[1]);
-            area.push_back(std::max(kLeast, share) * size * size);
+            shares.push_back((part.to[0] - part.from[0]) * (part.to[1] - part.from[1]));
         }
+    return shares;
 }
 
-void Patches::find_off_top(const Prism& prism) {
-    const auto on_it = [&](Index row, Index column) {
-        const Vec2 low = origin.head<2>() + size * Vec2(static_cast<double>(column), static_cast<double>(row));
-        const Vec2 high = low + Vec2(size, size),
-                   inset = Vec2::Constant(1e-6 * size);  // what only touches is not on it
-        const auto& edges = prism.edges();
-        return prism.within(0.5 * (low + high)) ||
-               std::any_of(edges.begin(), edges.end(),
-                           [&](const Prism::Edge& edge) { return passes(edge, low + inset, high - inset); });
-    };
-    off_top.clear();
-    for (Index row = 0; row < count[1]; ++row)
-        for (Index column = 0; column < count[0]; ++column) off_top.push_back(!on_it(row, column));
+void Patches::measure(const std::vector<Surface>& others) { take_areas(shares_among(others)); }
+
+void Patches::measure_top(const Prism& prism, const std::vector<Surface>& others) {
+    std::array<std::vector<double>, 2> lines;
+    for (std::size_t n = 0; n < 2; ++n)
+        for (Index line = 0; line <= count[n]; ++line)
+            lines[n].push_back(origin[static_cast<Eigen::Index>(n)] + size * static_cast<double>(line));
+    OutlineArea outline(prism.rings(), lines[0], lines[1]);
+    std::vector<double> shares = shares_among(others), covered(static_cast<std::size_t>(count[0]));
+    for (Index row = 0; row < count[1]; ++row) {
+        const auto [first, last] = outline.row(row, covered);
+        for (Index column = 0; column < count[0]; ++column) {
+            double& share = shares[static_cast<std::size_t>(row * count[0] + column)];
+            const bool within = column >= first && column < last;
+            share = within ? std::min(share, covered[static_cast<std::size_t>(column)] / (size * size)) : 0.0;
+        }
+    }
+    take_areas(shares);
 }
 
 void Patches::spread(const FacePart& part, const Vec3& given) {
@@ -138,9 +147,10 @@ FaceLedger::FaceLedger(const std::vector<Surface>& surfaces, const Vec3& low, co
             Face face{static_cast<int>(s), n, Vec3::Zero(), Vec3::Zero(), {}};
             face.patches = surface.kind == Surface::Kind::prism ? of_prism(*surface.prism, n, low, high, cell)
                                                                 : of_shape(*surface.shape, n, cell);
-            face.patches.measure(surfaces);
             if (surface.kind == Surface::Kind::prism && n == surface.prism->top_face())
-                face.patches.find_off_top(*surface.prism);
+                face.patches.measure_top(*surface.prism, surfaces);
+            else
+                face.patches.measure(surfaces);
             faces_.push_back(std::move(face));
         }
     }

@@ -108,6 +108,15 @@ double Prism::highest_top() const {
     return highest;
 }
 
+std::vector<std::vector<Vec2>> Prism::rings() const {
+    std::vector<std::vector<Vec2>> rings;
+    for (std::size_t k = 0; k < edges_.size(); ++k) {
+        if (edges_[k].before >= static_cast<int>(k)) rings.emplace_back();  // the first of its ring
+        rings.back().push_back(edges_[k].from);
+    }
+    return rings;
+}
+
 double Prism::top_at(const Vec2& p) const { return top_.values.empty() ? level_ : bed_height(top_, p.x(), p.y()).z; }
 
 /// Half-open in y, so that each side counts once.

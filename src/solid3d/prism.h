@@ -49,6 +49,8 @@ public:
         Vec2 to() const { return from + length * along; }
     };
     const std::vector<Edge>& edges() const { return edges_; }
+    /// Its outline: outer rings counter-clockwise, holes clockwise, not closed.
+    std::vector<std::vector<Vec2>> rings() const;
     double top_at(const Vec2& p) const;
     /// Whether a place is on the footprint.
     bool within(const Vec2& p) const;

@@ -1,4 +1,4 @@
-#include "particles/outline_area.h"
+#include "terrain/outline_area.h"
 
 #include <algorithm>
 #include <cmath>
