@@ -988,8 +988,14 @@ TEST_CASE("A largest mean force that lies within its window of the end of forces
     barriers[0].means = {{0.05, 9e4, 2.0}, {1.0, 64.6e3, 3.997}};
     barriers[1].means = {{0.05, 9e4, 3.99}, {1.0, 64.6e3, 2.9}};  // its short blow came late, its force did not
     barriers[2].means = {{1.0, 0.0, 4.0}};
+    for (BarrierSummary& barrier : barriers) barrier.blur = 0.1;
+    // What particles reached later than the stage has the bit of a force that came ahead of the flow.
+    BarrierSummary& late = barriers.emplace_back();
+    late.name = "late", late.means = {{1.0, 2.5, 3.9}}, late.overtopped = 138.5;
+    barriers.push_back(late), barriers.back().name = "never", barriers.back().overtopped = 0.0;
     const auto remarks = remarks_on_rising(barriers, {4.0, "the 3D stage ends", "stage.until"});
-    REQUIRE(remarks.size() == 1);
+    REQUIRE(remarks.size() == 2);
+    CHECK(remarks[1].find("late: found the flow at it, but no 3D point until the 3D stage ends at 4 s") == 0);
     for (const char* part : {"rising: ", "64.6 kN", "3.997 s", "the 3D stage ends at 4 s", "give a later stage.until"})
         CHECK(remarks[0].find(part) != std::string::npos);
 }

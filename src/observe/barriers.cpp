@@ -27,6 +27,14 @@ std::vector<std::string> remarks_on_rising(const std::vector<BarrierSummary>& ba
     std::vector<std::string> remarks;
     for (const BarrierSummary& barrier : barriers) {
         if (barrier.means.empty()) continue;
+        if (!(barrier.blur > 0.0)) {  // no point came to it
+            if (std::isfinite(barrier.run_up) || barrier.overtopped > 0.0)
+                remarks.push_back(
+                    fmt::format("{}: found the flow at it, but no 3D point until {} at {:.6g} s: no force on it is "
+                                "known; let stage.window hold it, and give a later {}",
+                                barrier.name, end.at, end.time, end.later));
+            continue;
+        }
         const MeanForce& longest = barrier.means.back();  // windows ascend
         if (!(longest.largest > 0.0) || longest.time < end.time - longest.window) continue;
         remarks.push_back(

@@ -48,7 +48,7 @@ struct ForcesEnd {
 };
 
 /// A remark on each barrier whose largest mean over its longest window ends within that window of the end of forces: it
-/// may have been rising still.
+/// may have been rising still. And on each that was reached when forces had ended.
 std::vector<std::string> remarks_on_rising(const std::vector<BarrierSummary>& barriers, const ForcesEnd& end);
 
 /// More barriers than these have no table of their own: opening hundreds at every output costs more than steps do.
