@@ -523,17 +523,14 @@ TEST_CASE("What particles do to a barrier outside of the stage's window is known
     CHECK(run.frame().faces.empty());
     CHECK(load.run_up > 2.2);
     CHECK(load.overtopped > 0.2);
-    CHECK_FALSE(said(run, "stand in stage.window"));
 }
 
-TEST_CASE("A barrier that stands in the stage's window in part has forces of that part, and the run says so",
-          "[barrier]") {
+TEST_CASE("A barrier that stands in the stage's window in part has forces of that part", "[barrier]") {
     Scene scene = channel(4.0);
     scene.barriers[0].outline = rectangle_of(10.0, 1.0, 12.0, 3.0);
     scene.solid->window = {0, 0, 22, 8};  // to x = 11.25: 4.5 of its 8 m of sides
     scene.solid->closed = {true, true, false, true};
     StagedRun run(scene);
-    CHECK(said(run, "wall: 56 % of it stand in stage.window"));
     CHECK_FALSE(run.loads()->barriers.at(0).faces.empty());
 }
 

@@ -17,12 +17,9 @@
 namespace frana {
 namespace {
 
-/// The share of a barrier's foot on the terrain that lies in the window of points [1].
-double share_in_window(const Barrier& barrier, const std::pair<Vec3, Vec3>& box, const Scene& scene) {
-    const GridGeometry& g = scene.bed.geometry;
-    const BarrierBox plan{box.first.head<2>(), box.second.head<2>()};
-    const double terrain = share_of_foot(barrier, plan, {g.x0, g.y0, g.x_max(), g.y_max()});
-    return terrain > 0.0 ? share_of_foot(barrier, plan, window_of(scene)) / terrain : 0.0;
+/// Whether some of a barrier's foot lies in the window of points.
+bool is_in_window(const Barrier& barrier, const std::pair<Vec3, Vec3>& box, const Scene& scene) {
+    return share_of_foot(barrier, {box.first.head<2>(), box.second.head<2>()}, window_of(scene)) > 0.0;
 }
 
 }  // namespace
@@ -37,9 +34,9 @@ BarrierWatch::BarrierWatch(const Scene& scene, const Mpm3d& flow, double blur)
         const Surface& surface = surfaces[static_cast<std::size_t>(surfaces_[n])];
         boxes_.push_back(box_around(surface));
         names_.push_back(surface.name);
-        inside_.push_back(scene.solid ? share_in_window(scene.barriers[n], boxes_.back(), scene) : 1.0);
         BarrierLoad load;
-        if (inside_.back() > 0.0) load.faces.resize(static_cast<std::size_t>(surface.faces()));
+        if (!scene.solid || is_in_window(scene.barriers[n], boxes_.back(), scene))
+            load.faces.resize(static_cast<std::size_t>(surface.faces()));
         const Barrier* const barrier = n < scene.barriers.size() ? &scene.barriers[n] : nullptr;
         load.about = middle_of(surface, barrier, scene);
         ground_.push_back(barrier ? ground_around(*barrier, surface, scene) : Raster());
@@ -76,11 +73,6 @@ std::vector<std::string> BarrierWatch::remarks(double from) const {
     for (std::size_t n = 0; n < names_.size(); ++n) {
         if (from > 0.0 && at_start_[n] > 0.0)
             late += fmt::format("{}{} ({:.3g} m3)", late.empty() ? "" : ", ", names_[n], at_start_[n]);
-        if (inside_[n] > 0.0 && inside_[n] < 0.99)
-            all.push_back(
-                fmt::format("{}: {:.0f} % of it stand in stage.window; forces are those on that part; expected all of "
-                            "it, if the force on the whole is asked for",
-                            names_[n], 100.0 * inside_[n]));
     }
     if (!late.empty())
         all.push_back(fmt::format(

@@ -46,7 +46,6 @@ private:
     std::vector<int> surfaces_;                      ///< of each barrier
     std::vector<std::pair<Vec3, Vec3>> boxes_;       ///< around each
     std::vector<Raster> ground_;                     ///< that each may be buried in
-    std::vector<double> inside_;                     ///< share of each in the stage's window [1]
     std::vector<std::string> names_;                 ///< of each
     std::vector<std::vector<std::uint8_t>> places_;  ///< per barrier, by number of the point: where it was so far
     std::vector<double> at_start_;                   ///< volume at each as points begin [m3]

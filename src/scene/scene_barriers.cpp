@@ -90,6 +90,7 @@ public:
         barrier.friction = case_.number(prefix_ + "friction");
         barrier.stuck = case_.flag(prefix_ + "stuck");
         if (is_met) remark_beyond(barrier, vertices);
+        if (is_met && !case_.flag(prefix_ + "each")) remark_window(barrier, vertices);
         barrier.windows = windows();
         if (case_.word("material.structure.law") == "none") {  // structured particles meet boxes
             remark_thin(barrier.outline);
@@ -154,10 +155,27 @@ private:
                         place(), barrier.name, gap.height, 100.0 * gap.share, kRoom, kRoom * cell));
     }
 
-    /// What is beyond the terrain takes no load. Where its sides are walls a barrier across it is drawn into them.
-    void remark_beyond(const Barrier& barrier, const std::vector<Vec2>& vertices) {
+    static BarrierBox box_of(const std::vector<Vec2>& vertices) {
         BarrierBox box{vertices.front(), vertices.front()};
         for (const Vec2& p : vertices) box.low = box.low.cwiseMin(p), box.high = box.high.cwiseMax(p);
+        return box;
+    }
+
+    /// Of what lies on the terrain.
+    void remark_window(const Barrier& barrier, const std::vector<Vec2>& vertices) {
+        const BarrierBox box = box_of(vertices);
+        const double inside =
+            share_of_foot(barrier, box, window_extent()) / share_of_foot(barrier, box, terrain_extent());
+        if (inside > 0.0 && inside < 0.99)
+            scene_.log.push_back(
+                fmt::format("{}: {:.0f} % of {} stand in stage.window; forces are those on that part; expected all of "
+                            "it, if the force on the whole is asked for",
+                            place(), 100.0 * inside, barrier.name));
+    }
+
+    /// What is beyond the terrain takes no load. Where its sides are walls a barrier across it is drawn into them.
+    void remark_beyond(const Barrier& barrier, const std::vector<Vec2>& vertices) {
+        const BarrierBox box = box_of(vertices);
         const double beyond = 1.0 - share_of_foot(barrier, box, terrain_extent());
         if (beyond > (case_.word("boundary.sides") != "open" ? 0.5 : 0.01))
             scene_.log.push_back(
@@ -208,7 +226,10 @@ private:
             one.top = barrier.top, one.height = heights_.empty() ? barrier.height : heights_[n];
             one.stuck = barrier.stuck, one.friction = barrier.friction, one.windows = barrier.windows;
             if (scene_.solid) judge_buried(one);
-            if (scene_.solid && meets(corners, window_extent())) remark_low(one);
+            if (scene_.solid && meets(corners, window_extent())) {
+                remark_low(one);
+                remark_window(one, corners);
+            }
             scene_.barriers.push_back(std::move(one));
         }
         if (beyond > 0)
