@@ -12,7 +12,6 @@
 #include "scene/memory_need.h"
 #include "scene/remarks.h"
 #include "terrain/holes.h"
-#include "terrain/part_of.h"
 
 namespace frana {
 namespace {
@@ -53,6 +52,23 @@ std::unique_ptr<DepthAveraged> GrowingParticles::particles_among_walls(Start sta
     footings_ = stand_in(walled, barrier_nodes_, held_.i0, held_.j0);
     footings_.displaced = make_room_in_lake(walled, scene_.bed);
     return std::make_unique<DepthAveraged>(walled, start);
+}
+
+/// To be filled with what others have, or with a state.
+std::unique_ptr<DepthAveraged> GrowingParticles::resumed_particles() {
+    auto particles = particles_among_walls(Start::resumed);
+    if (exits_) particles->open_exits(of_part(*exits_), false);
+    return particles;
+}
+
+void GrowingParticles::open_exits(const NodeBox& nodes, bool leave_now) {
+    exits_ = nodes;
+    particles_->open_exits(of_part(nodes), leave_now);
+}
+
+void GrowingParticles::close_exits() {
+    exits_.reset();
+    particles_->close_exits();
 }
 
 void GrowingParticles::advance(double until) {
@@ -103,6 +119,9 @@ void GrowingParticles::hold(NodeBox box) {
     lay_over(bed, scene_.bed, held_.i0 - box.i0, held_.j0 - box.j0);
     scene_.bed = std::move(bed);
     scene_.holes = holes_of(scene_.bed);
+    const Index east = held_.i0 - box.i0, north = held_.j0 - box.j0;
+    if (scene_.solid)
+        for (std::size_t side = 0; side < 4; ++side) scene_.solid->window[side] += side % 2 == 0 ? east : north;
     held_ = box;
 }
 
@@ -130,17 +149,13 @@ void GrowingParticles::grow(const NodeBox& box) {
                                     particles_->status().step, particles_->status().time, error.what()));
     }
     const Index east = before.i0 - held_.i0, north = before.j0 - held_.j0;
-    auto larger = particles_among_walls(Start::resumed);
+    auto larger = resumed_particles();
     larger->take_over(*particles_, east, north);
     particles_ = std::move(larger);
     ++times_grown_;
 }
 
-void GrowingParticles::show_part() {
-    NodeBox box = common(widened(shown_, kShownAround), held_);
-    box.i0 -= held_.i0, box.j0 -= held_.j0;
-    particles_->show(box);
-}
+void GrowingParticles::show_part() { particles_->show(of_part(common(widened(shown_, kShownAround), held_))); }
 
 Frame GrowingParticles::frame() {
     show_part();
@@ -180,7 +195,7 @@ void GrowingParticles::serialize(Archive& archive) {
             if (!(common(held_, box) == held_) || !(common(box, NodeBox::all(wider_->grid)) == box))
                 throw misfit("its part of the terrain is not one of this terrain");
             hold(box);
-            particles_ = particles_among_walls(Start::resumed);
+            particles_ = resumed_particles();
         }
     }
     particles_->serialize(archive);

@@ -3,6 +3,7 @@
 #include "coupling/footings.h"
 #include "coupling/wrapped_simulation.h"
 #include "shallow/depth_averaged.h"
+#include "terrain/part_of.h"
 
 namespace frana {
 
@@ -23,6 +24,13 @@ public:
 
     const NodeBox& held() const { return held_; }             ///< nodes of the whole terrain that it works on
     DepthAveraged& particles() const { return *particles_; }  ///< others once the part has grown
+    /// With the terrain that is held now, without what it began with.
+    const Scene& scene() const { return scene_; }
+    /// As those of DepthAveraged, with nodes of the whole terrain that the part holds. They stay as it grows.
+    void open_exits(const NodeBox& nodes, bool leave_now);
+    void close_exits();
+    /// Frames show these nodes of the whole terrain from now on.
+    void show_always(const NodeBox& nodes) { shown_ = united(shown_, nodes); }
 
 private:
     Simulation& inner() const override { return *particles_; }
@@ -30,6 +38,10 @@ private:
     void show_part();
     void find_barriers();
     std::unique_ptr<DepthAveraged> particles_among_walls(Start start);
+    std::unique_ptr<DepthAveraged> resumed_particles();
+    NodeBox of_part(const NodeBox& nodes) const {
+        return {nodes.i0 - held_.i0, nodes.j0 - held_.j0, nodes.nx, nodes.ny};
+    }
     void sample();
     NodeBox room_for(const NodeBox& worked, Index clear) const;
     void grow(const NodeBox& box);
@@ -43,6 +55,7 @@ private:
     NodeBox shown_;                           ///< nodes of the whole terrain that frames show
     std::vector<BarrierNode> barrier_nodes_;  ///< those of barriers, of the whole terrain
     Footings footings_;                       ///< of the barriers
+    std::optional<NodeBox> exits_;            ///< where particles leave, of the whole terrain
     std::unique_ptr<DepthAveraged> particles_;
     Index times_grown_ = 0;
     bool aside_ = false;  ///< it comes back to a state that was put aside: until then there is room enough

@@ -8,7 +8,7 @@
 namespace frana {
 
 double make_room_in_lake(Scene& scene, const Raster& bed) {
-    if (!scene.still_surface) return 0.0;
+    if (!scene.still_surface || scene.solid) return 0.0;  // 3D points stand beside barriers
     constexpr double kCrumb = 0.03;  // of a particle; less is as little as the fit of masses leaves one (mass_fit.cpp)
     const Seeds all = std::move(scene.particles);
     scene.particles = {};

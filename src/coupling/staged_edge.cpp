@@ -36,14 +36,17 @@ struct Along {
 /// One thread: there are many steps of points in one of particles.
 void StagedRun::show_points() {
     timed_("edge", [&] {
-        const GridGeometry& g = scene_.bed.geometry;
+        const GridGeometry& g = depth_averaged().flow().grid.geometry();
         const MaterialPoints& q = points_->body().points;
         const bool walls = are_closed(scene_.sides);
         const double scale = 1.0 / (scene_.density * g.cell * g.cell);
         std::vector<double>& depth = points_depth_;
-        depth.resize(static_cast<std::size_t>(g.size()));
+        const auto nodes = static_cast<std::size_t>(g.size());
+        if (depth.size() != nodes) depth.assign(nodes, 0.0);
+        const NodeAt origin = terrain_->origin();
         const NodeBox& box = map_.nodes();  // elsewhere points give nothing
-        for (Index j = box.j0; j < box.j0 + box.ny; ++j) std::fill_n(depth.begin() + (j * g.nx + box.i0), box.nx, 0.0);
+        for (Index j = box.j0 + origin.j; j < box.j0 + origin.j + box.ny; ++j)
+            std::fill_n(depth.begin() + (j * g.nx + box.i0 + origin.i), box.nx, 0.0);
         for (Index p = 0; p < q.count(); ++p) {
             const Vec3 x = points_->position(p);
             const Along u((x[0] - g.x0) / g.cell, g.nx, walls), v((x[1] - g.y0) / g.cell, g.ny, walls);
@@ -52,7 +55,7 @@ void StagedRun::show_points() {
                     depth[static_cast<std::size_t>(v.node[j] * g.nx + u.node[i])] +=
                         scale * q.mass[p] * u.w[i] * v.w[j];
         }
-        particles_->set_adjacent(depth);
+        depth_averaged().set_adjacent(depth);
     });
 }
 
@@ -60,7 +63,7 @@ void StagedRun::show_points() {
 /// velocities. Particles farther on are faster. Without the gradients the nodes that both sides share would take that
 /// for a force.
 FlowParticles StagedRun::particles_at_edge(std::vector<Mat2>& gradients) const {
-    const GridGeometry& g = scene_.bed.geometry;
+    const GridGeometry& g = depth_averaged().flow().grid.geometry();
     Seeds seeds;
     std::vector<Mat2> domains;
     const auto add = [&](double x, double y, double vx, double vy, double mass, double depth, const Edges& edges) {
@@ -74,11 +77,15 @@ FlowParticles StagedRun::particles_at_edge(std::vector<Mat2>& gradients) const {
         add(particle.x, particle.y, particle.vx, particle.vy, particle.mass, particle.depth, particle.edges);
         gradients.push_back(Mat2(particle.gradient.data()));
     }
+    const NodeAt origin = terrain_->origin();
+    const GridGeometry& begin = scene_.bed.geometry;
     const auto at_edge = [&](double x, double y) {
-        const auto i = static_cast<Index>(std::floor(x + 0.5)), j = static_cast<Index>(std::floor(y + 0.5));
-        return at_edge_[static_cast<std::size_t>(j * g.nx + i)] != 0;
+        const Index i = static_cast<Index>(std::floor(x + 0.5)) - origin.i,
+                    j = static_cast<Index>(std::floor(y + 0.5)) - origin.j;
+        if (i < 0 || j < 0 || i >= begin.nx || j >= begin.ny) return false;
+        return at_edge_[static_cast<std::size_t>(j * begin.nx + i)] != 0;
     };
-    const Particles& c = particles_->flow().particles;
+    const Particles& c = depth_averaged().flow().particles;
     c.with_real([&](auto real) {
         const auto& held = c.carried<decltype(real)>();
         for (Index p = 0; p < c.count(); ++p) {
@@ -103,7 +110,8 @@ GhostParticles StagedRun::ghosts_of(const FlowParticles& particles, const std::v
         in_parts(particles, scene_.solid->spacing, g.cell, scene_.bed, {g.x0, g.y0, g.x_max(), g.y_max()});
     look_ahead(parts, scene_.bed, kAhead * scene_.solid->cell);
     const std::vector<std::size_t> part_of = parts_of_seeds(parts, *scene_.solid);
-    GhostParticles ghosts{seeds_of(parts, *scene_.solid), {}, particles_->status().time, particles_->status().dt};
+    GhostParticles ghosts{
+        seeds_of(parts, *scene_.solid), {}, depth_averaged().status().time, depth_averaged().status().dt};
     for (std::size_t k = 0; k < part_of.size(); ++k) {
         const std::size_t part = part_of[k], particle = static_cast<std::size_t>(parts.id[part]);
         const Mat2& c = gradients[particle];

@@ -7,12 +7,13 @@
 #include "coupling/staged_run.h"
 #include "mpm/flow_fields.h"
 #include "terrain/bed_points.h"
+#include "terrain/part_of.h"
 
 namespace frana {
 
 Frame StagedRun::frame() {
-    if (!points_) return particles_->frame();
-    Frame frame = particles_->frame();
+    if (!points_) return terrain_->frame();
+    Frame frame = terrain_->frame();
     store_.begin();
     timed_("frame", [&] {
         const Status now = status_;
@@ -57,19 +58,26 @@ void StagedRun::particle_fields(Frame& frame) {
     }
 }
 
+/// The nodes that a frame shows, of those of the scene; some may lie beyond.
+NodeBox StagedRun::box_of_frame(const Frame& frame) const {
+    const std::optional<NodeBox> shown = box_of(frame.grid, scene_.bed.geometry);
+    expect(shown && common(*shown, map_.nodes()) == map_.nodes(), "a frame shows all nodes that points can give to");
+    return *shown;
+}
+
 /// Depths and pressures of both add; velocities are those of their common momentum. Only nodes that points can give to
 /// change, where they are: in the memory of the particles' frame, which nobody else has and their next one writes anew.
 void StagedRun::node_fields(Frame& frame) {
-    const GridGeometry& g = scene_.bed.geometry;
     const NodeBox& box = map_.nodes();
+    const NodeBox shown = box_of_frame(frame);
+    const auto place = [&](Index i, Index j) { return (j - shown.j0) * shown.nx + i - shown.i0; };
     const auto each = [&](const char* name, const auto& change) {
         const Field* const field = frame.node(name);
         if (!field) return;
         auto* const values = const_cast<double*>(field->data);
         Index m = 0;
         for (Index j = box.j0; j < box.j0 + box.ny; ++j)
-            for (Index i = box.i0; i < box.i0 + box.nx; ++i, ++m)
-                change(values + (j * g.nx + i) * field->components, m);
+            for (Index i = box.i0; i < box.i0 + box.nx; ++i, ++m) change(values + place(i, j) * field->components, m);
     };
     const auto more = [&](const char* name, const auto& at) {
         each(name, [&](double* value, Index m) { *value += at(m); });
@@ -112,7 +120,7 @@ void StagedRun::node_fields(Frame& frame) {
     const double* const elevation = frame.node("elevation")->data;
     const double* const depth = frame.node("depth")->data;
     each("surface", [&](double* surface, Index m) {
-        const Index i = box.i0 + m % box.nx, j = box.j0 + m / box.nx, k = j * g.nx + i;
+        const Index i = box.i0 + m % box.nx, j = box.j0 + m / box.nx, k = place(i, j);
         if (stands_in_window(i, j)) *surface = elevation[k] + depth[k];
     });
 }

@@ -27,7 +27,7 @@ bool in_hole_wall(const Flow& flow, const Vec2& x) {
 void StagedRun::note_departed() {
     for (const DepartedPoint& point : points_->take_departed()) {
         const Vec2 x = point.position.head<2>();
-        if (!particles_->may_stand(x.x(), x.y()) && !in_hole_wall(particles_->flow(), x)) continue;
+        if (!depth_averaged().may_stand(x.x(), x.y()) && !in_hole_wall(depth_averaged().flow(), x)) continue;
         returning_.push_back(point);
         points_->set_adjacent(point);
     }
@@ -35,7 +35,7 @@ void StagedRun::note_departed() {
 
 /// Where a point has come to, or where it left if particles may not stand there.
 Vec2 StagedRun::where_allowed(const DepartedPoint& point, const Vec2& to) const {
-    return particles_->may_stand(to.x(), to.y()) ? to : Vec2(point.position.head<2>());
+    return depth_averaged().may_stand(to.x(), to.y()) ? to : Vec2(point.position.head<2>());
 }
 
 /// Where a particle of a point that has come to `to` stands. It is there, or where it left. A barrier may raise the
@@ -45,16 +45,23 @@ Vec2 StagedRun::where_allowed(const DepartedPoint& point, const Vec2& to) const 
 /// wall, and would run down the same cells again and again.
 Vec2 StagedRun::place_of_particle(const DepartedPoint& point, const Vec2& to) {
     Vec2 x = where_allowed(point, to);
-    const Flow& flow = particles_->flow();
+    const Flow& flow = depth_averaged().flow();
     const bool at_hole = in_hole_wall(flow, x);
     if (!at_hole && (!on_raised(x) || above_barrier(x))) return x;
     const auto nearest = [&](std::uint8_t kind) {
-        return nearest_before(point, x, [&](Index i, Index j) { return flow.bed.exit[flow.grid.at(i, j)] == kind; });
+        return nearest_before(point, x, [&](Index i, Index j) { return exit_at(i, j) == kind; });
     };
     std::optional<Vec2> place = nearest(0);
     if (!place && !at_hole) place = nearest(kNoted);
     if (!place) returned_.raised += point.mass;
     return place.value_or(x);
+}
+
+/// Where particles leave at a node, and how.
+std::uint8_t StagedRun::exit_at(Index i, Index j) const {
+    const NodeAt origin = terrain_->origin();
+    const Flow& flow = depth_averaged().flow();
+    return flow.bed.exit[flow.grid.at(i + origin.i, j + origin.j)];
 }
 
 /// Not beyond the terrain, where points may be.
@@ -148,7 +155,7 @@ bool StagedRun::behind_barrier(const Vec3& from, const Vec2& place) const {
 
 /// How much of a point its particle has room for where it stands on the ramp of a barrier [1]: what is above it.
 double StagedRun::share_above_ramp(const DepartedPoint& point, const Vec2& x) const {
-    const double size = std::cbrt(point.mass / scene_.density), ground = particles_->at(x).elevation;
+    const double size = std::cbrt(point.mass / scene_.density), ground = depth_averaged().at(x).elevation;
     return std::clamp(0.5 + (point.position.z() - ground) / size, 0.0, 1.0);
 }
 
@@ -156,8 +163,8 @@ double StagedRun::share_above_ramp(const DepartedPoint& point, const Vec2& x) co
 /// moved to the nearest cell before it, and spreads from there. A cell that holds points goes before a dry one.
 void StagedRun::clear_ramps() {
     const GridGeometry& g = scene_.bed.geometry;
-    const Flow& flow = particles_->flow();
-    const auto is_open = [&](Index i, Index j) { return !is_raised(i, j) && flow.bed.exit[flow.grid.at(i, j)] == 0; };
+    const Flow& flow = depth_averaged().flow();
+    const auto is_open = [&](Index i, Index j) { return !is_raised(i, j) && exit_at(i, j) == 0; };
     Displaced displaced(g, scene_.density, [&](Index node) {
         const Index i = node % g.nx, j = node / g.nx;
         return is_open(i, j) ? bed_below(scene_.bed, g.x(i), g.y(j)) : std::numeric_limits<double>::quiet_NaN();
@@ -215,8 +222,8 @@ void StagedRun::convert_to_2d(const PlaceOf& place) {
     note_largest();
     for (const DepartedPoint& point : returning_) returned_.mass += point.mass, returned_.lost += point.energy;
     const MovingParticles particles =
-        particles_of(returning_, scene_, {time, place, [&](const Vec2& x) { return particles_->at(x).depth; }});
-    returned_.lost -= particles_->take_in(particles.seeds, particles.gradient, time);
+        particles_of(returning_, scene_, {time, place, [&](const Vec2& x) { return depth_averaged().at(x).depth; }});
+    returned_.lost -= depth_averaged().take_in(particles.seeds, particles.gradient, time);
     returning_.clear();
 }
 
@@ -226,8 +233,8 @@ void StagedRun::end_3d() {
         note_largest();
         points_->set_adjacent(GhostParticles{});
         points_->leave();
-        particles_->close_exits();
-        particles_->catch_up();
+        terrain_->close_exits();
+        depth_averaged().catch_up();
         std::vector<DepartedPoint> all = points_->take_departed();
         if (returning_.empty())
             returning_ = std::move(all);
@@ -236,7 +243,7 @@ void StagedRun::end_3d() {
         if (!raised_.empty()) clear_ramps();
         convert_to_2d([&](const DepartedPoint& point, const Vec2& to) {
             const Vec2 x = where_allowed(point, to);
-            return in_hole_wall(particles_->flow(), x) ? place_of_particle(point, to) : x;
+            return in_hole_wall(depth_averaged().flow(), x) ? place_of_particle(point, to) : x;
         });
         returning_.shrink_to_fit();
         ended_ = true;

@@ -11,43 +11,31 @@
 #include "base/round_number.h"
 #include "coupling/bed_friction.h"
 #include "coupling/start_pressure.h"
+#include "scene/stage_reach.h"
 #include "terrain/part_of.h"
 #include "terrain/places.h"
 
 namespace frana {
 
-namespace {
-
-/// The scene of the particles: to them barriers are ground.
-Scene of_particles(Scene scene, Footings& footings) {
-    if (!scene.barriers.empty()) footings = stand_in(scene, barrier_nodes(scene), 0, 0);
-    return scene;
-}
-
-}  // namespace
-
 StagedRun::StagedRun(const Scene& scene, Start start)
-    : scene_(scene),
-      particles_(std::make_unique<DepthAveraged>(of_particles(scene, footings_), start)),
-      map_(scene),
-      spray_(scene) {
+    : scene_(scene), terrain_(std::make_unique<TerrainParticles>(scene, start)), map_(scene), spray_(scene) {
     expect(scene.solid.has_value(), "a staged run has a 3D stage");
     if (!scene.barriers.empty()) {
         mark_raised();
-        particles_->note_parents();
+        depth_averaged().note_parents();
         particles_watch_.emplace(scene_);
     }
     scene_.particles = {};
-    status_ = particles_->status();
+    status_ = depth_averaged().status();
     if (start == Start::placed && scene.solid->from == 0.0)
-        begin_3d([&](const Marks& marks) { return particles_of(scene.particles, scene, marks); });
+        begin_3d([&](const Scene& now, const Marks& marks) { return particles_of(scene.particles, now, marks); });
 }
 
 /// A step aside must not begin or end the stage: a rounding error less than what is left.
 double StagedRun::longest_step() const {
     const auto just_before = [&](double time) { return std::nextafter(time - status_.time, 0.0); };
-    if (!points_) return std::min(particles_->longest_step(), just_before(scene_.solid->from));
-    if (ended_) return particles_->longest_step();
+    if (!points_) return std::min(depth_averaged().longest_step(), just_before(scene_.solid->from));
+    if (ended_) return depth_averaged().longest_step();
     if (!points_alone()) return 0.0;
     const double longest = points_->longest_step();
     return scene_.solid->until ? std::min(longest, just_before(*scene_.solid->until)) : longest;
@@ -57,18 +45,25 @@ double StagedRun::longest_step() const {
 void StagedRun::advance(double until) {
     if (!points_) {
         const double before = status_.time;
-        particles_->advance(std::min(until, scene_.solid->from));
+        try {
+            terrain_->advance(std::min(until, scene_.solid->from));
+        } catch (const UserError&) {  // its step was done
+            status_ = depth_averaged().status();
+            throw;
+        }
         watch_particles(before, until);
-        status_ = particles_->status();
+        status_ = depth_averaged().status();
         if (status_.time < scene_.solid->from) return;
         const std::vector<Mat2> domains =
-            domains_of(particles_->flow().particles, scene_.bed.geometry.cell, scene_.scheme);
-        begin_3d([&](const Marks& marks) { return particles_of(particles_->frame(), domains, scene_.bed, marks); });
+            domains_of(depth_averaged().flow().particles, scene_.bed.geometry.cell, scene_.scheme);
+        begin_3d([&](const Scene& now, const Marks& marks) {
+            return particles_of(terrain_->frame(), domains, now.bed, marks);
+        });
         return;
     }
     const auto count = [&] {
         status_.step += 1;
-        accumulate(particles_->status());
+        accumulate(depth_averaged().status());
     };
     const double end = scene_.solid->until.value_or(until);
     try {
@@ -85,24 +80,24 @@ void StagedRun::advance(double until) {
 }
 
 void StagedRun::step_particles_alone(double until) {
-    const double before = particles_->status().time;
-    particles_->advance(until);
+    const double before = depth_averaged().status().time;
+    terrain_->advance(until);
     watch_particles(before, until);
 }
 
 /// After a step of particles: what they do to barriers adds to what points do.
 void StagedRun::watch_particles(double before, double until) {
-    if (particles_watch_ && particles_watch_->is_due(*particles_, before, until))
+    if (particles_watch_ && particles_watch_->is_due(depth_averaged(), before, until))
         timed_("map", [&] { sample_particles(); });
 }
 
 void StagedRun::sample_particles() {
     const BarrierLoads before = particles_watch_->loads();
-    particles_watch_->sample_particles(*particles_, scene_.density);
+    particles_watch_->sample_particles(depth_averaged(), scene_.density);
     if (watch_) watch_->add(before, particles_watch_->loads());
 }
 
-bool StagedRun::points_alone() const { return particles_->status().particles == 0 && pending_.empty(); }
+bool StagedRun::points_alone() const { return depth_averaged().status().particles == 0 && pending_.empty(); }
 
 /// The end of the points' next step towards a time that they have to meet. Their steps there are equally long. A force
 /// on a barrier that is a few steps old would jump where the last one is much shorter.
@@ -115,11 +110,11 @@ double StagedRun::next_on_the_way_to(double time) const {
 /// Particles that are left go a step ahead of the points. So what flows into the window is there when the points arrive
 /// at that time.
 void StagedRun::step_points(double until) {
-    if (particles_->status().time <= points_->status().time) step_particles(until);
+    if (depth_averaged().status().time <= points_->status().time) step_particles(until);
     const bool alone = points_alone();
-    points_->advance(alone ? until : std::min(until, next_on_the_way_to(particles_->status().time)));
+    points_->advance(alone ? until : std::min(until, next_on_the_way_to(depth_averaged().status().time)));
     note_departed();
-    if (alone || points_->status().time == particles_->status().time) {
+    if (alone || points_->status().time == depth_averaged().status().time) {
         convert_to_3d();
         if (!returning_.empty())
             timed_("3D to 2D", [&] {
@@ -134,13 +129,14 @@ void StagedRun::step_points(double until) {
 }
 
 /// Particles in the window become points, those outside stay; none of them is in both.
-void StagedRun::begin_3d(const std::function<FlowParticles(const Marks&)>& particles_at) {
-    const Status before = particles_->status();
+void StagedRun::begin_3d(const std::function<FlowParticles(const Scene&, const Marks&)>& particles_at) {
+    const Status before = depth_averaged().status();
     timed_("2D to 3D", [&] {
-        const Marks inside = nodes_in_window(scene_), everywhere(inside.size(), 1);
-        start_ = choose_start(scene_, particles_at(everywhere));  // what is outside still comes
+        const Scene& now = scene_now();
+        const Marks inside = nodes_in_window(now), everywhere(inside.size(), 1);
+        start_ = choose_start(now, particles_at(now, everywhere));  // what is outside still comes
         SolidScene space = space_of_stage();
-        FlowParticles particles = particles_at(inside);
+        FlowParticles particles = particles_at(now, inside);
         take_start_pressure(particles, scene_);
         space.points = seeds_of_window(particles, space.surfaces);
         points_ = std::make_unique<Mpm3d>(space);
@@ -149,9 +145,10 @@ void StagedRun::begin_3d(const std::function<FlowParticles(const Marks&)>& parti
         if (particles_watch_) begin_watch();
         at_edge_ = nodes_at_edge(scene_);
         note_largest();
-        particles_->open_exits(inside, true);
+        terrain_->open_exits(window_nodes(*scene_.solid), true);
+        terrain_->show_always(map_.nodes());
     });
-    const Status& now = particles_->status();  // what they gave counts as left
+    const Status& now = depth_averaged().status();  // what they gave counts as left
     converted_.mass = now.mass_left - before.mass_left;
     converted_.energy = now.energy_left - before.energy_left;
     // Points from the start on are what sums begin with: the release never stood on the ramp of a barrier as particles.
@@ -159,7 +156,7 @@ void StagedRun::begin_3d(const std::function<FlowParticles(const Marks&)>& parti
     for (std::size_t axis = 0; axis < 2; ++axis)
         converted_.momentum[axis] = now.momentum_left[axis] - before.momentum_left[axis];
     sample(points_->status().time);
-    accumulate(particles_->status());
+    accumulate(depth_averaged().status());
 }
 
 void StagedRun::begin_watch() {
@@ -201,7 +198,7 @@ void StagedRun::require_below_top(const FlowParticles& particles) const {
                             "reaches at x {:.10g}, y {:.10g}, "
                             "t = {:.6g} s; give a higher top",
                             start_.top, particles.bed[k] + particles.depth[k], particles.x[k], particles.y[k],
-                            std::max(particles_->status().time, scene_.solid->from)));
+                            std::max(depth_averaged().status().time, scene_.solid->from)));
 }
 
 SolidSeeds StagedRun::seeds_of_window(const FlowParticles& particles, const std::vector<Surface>& surfaces) {
@@ -217,22 +214,32 @@ SolidSeeds StagedRun::seeds_of_window(const FlowParticles& particles, const std:
 }
 
 void StagedRun::step_particles(double until) {
-    if (particles_->status().particles == 0) {
+    if (depth_averaged().status().particles == 0) {
         points_->set_adjacent(GhostParticles{});
         map_.set_adjacent(FlowParticles{});
         return;
     }
     show_points();
-    const double before = particles_->status().time;
-    particles_->advance(until);
+    const double before = depth_averaged().status().time;
+    try {
+        terrain_->advance(until);
+    } catch (const UserError&) {  // its step was done
+        take_departed();
+        throw;
+    }
     watch_particles(before, until);
-    pending_ = particles_->take_departed();
+    take_departed();
+    show_particles();
+}
+
+/// They are on their way into the window.
+void StagedRun::take_departed() {
+    pending_ = depth_averaged().take_departed();
     for (const Departed& particle : pending_) {
         converted_.mass += particle.mass, converted_.mass_later += particle.mass;
         converted_.energy += particle.energy;
         converted_.momentum[0] += particle.mass * particle.vx, converted_.momentum[1] += particle.mass * particle.vy;
     }
-    show_particles();
 }
 
 /// The particles that flowed into the window in the particles' last step.
@@ -271,8 +278,8 @@ void StagedRun::sample(double until) {
 
 /// To be called before material passes from one model to the other, and the map forgets it.
 void StagedRun::note_largest() {
-    deepest_ = std::max({deepest_, particles_->status().max_depth, map_.extent().max_depth});
-    fastest_ = std::max({fastest_, particles_->status().max_speed, points_->status().max_speed});
+    deepest_ = std::max({deepest_, depth_averaged().status().max_depth, map_.extent().max_depth});
+    fastest_ = std::max({fastest_, depth_averaged().status().max_speed, points_->status().max_speed});
 }
 
 /// Sums of both models. All energy that the points lost counts as dissipated. What particles do not have, that of their
@@ -329,7 +336,7 @@ void StagedRun::accumulate(const Status& particles) {
 
 /// Particles and points on their way from one model to the other move.
 MovingMass StagedRun::motion(const MotionQuery& query) const {
-    MovingMass motion = particles_->motion(query);
+    MovingMass motion = depth_averaged().motion(query);
     if (!points_) return motion;
     motion.mass = status_.mass, motion.fastest = status_.max_speed_on_map;
     for (const Departed& particle : pending_) motion.moving += particle.mass;
@@ -343,7 +350,7 @@ MovingMass StagedRun::motion(const MotionQuery& query) const {
 
 /// What rests as particles may flow as points, and the other way round.
 bool StagedRun::may_rest() const {
-    return points_ && (!scene_.solid->until || (ended_ && particles_->status().dt > 0.0));
+    return points_ && (!scene_.solid->until || (ended_ && depth_averaged().status().dt > 0.0));
 }
 
 /// Whether it is points that stand on a node.
@@ -355,14 +362,16 @@ bool StagedRun::stands_in_window(Index i, Index j) const {
 /// What depth at a node stands on [m]. In the window of points it is their ground, or the top of a barrier that leaves no
 /// room beside it. Particles have barriers as ground, with a ramp before each: the ground elsewhere.
 double StagedRun::ground_at(Index i, Index j) const {
-    const double of_particles = particles_->flow().bed.z[particles_->flow().grid.at(i, j)];
+    const NodeAt origin = terrain_->origin();
+    const Flow& flow = depth_averaged().flow();
+    const double of_particles = flow.bed.z[flow.grid.at(i + origin.i, j + origin.j)];
     if (!stands_in_window(i, j)) return of_particles;
     const double top = map_.top_below(map_.number(i, j)), bed = scene_.bed.at(i, j);
     return std::isfinite(top) ? top : std::isfinite(bed) ? bed : of_particles;
 }
 
 Sample StagedRun::at(const Vec2& point) const {
-    Sample sample = particles_->at(point);
+    Sample sample = depth_averaged().at(point);
     if (!points_) return sample;
     const Sample more = map_.at(point);
     const double depth = sample.depth + more.depth;
@@ -372,10 +381,11 @@ Sample StagedRun::at(const Vec2& point) const {
     }
     sample.depth = depth;
     sample.elevation = 0.0;
-    const NodeSquare around(scene_.bed.geometry, point);
+    const NodeAt origin = terrain_->origin();
+    const NodeSquare around(depth_averaged().flow().grid.geometry(), point);
     for (Index n = 0; n < 4; ++n)
         if (const double w = around.weight(n); w > 0.0)
-            sample.elevation += w * ground_at(around.node(n).i, around.node(n).j);
+            sample.elevation += w * ground_at(around.node(n).i - origin.i, around.node(n).j - origin.j);
     return sample;
 }
 
@@ -520,8 +530,7 @@ void StagedRun::remark_sound(std::vector<std::string>& remarks) const {
 }
 
 std::vector<std::string> StagedRun::remarks() const {
-    std::vector<std::string> remarks = particles_->remarks();
-    for (std::string& remark : remarks_on(footings_)) remarks.push_back(std::move(remark));
+    std::vector<std::string> remarks = terrain_->remarks();
     if (particles_watch_)
         for (std::string& remark : particles_watch_->remarks()) remarks.push_back(std::move(remark));
     if (!points_) return remarks;
@@ -559,7 +568,7 @@ std::vector<std::string> StagedRun::remarks() const {
 }
 
 std::vector<PhaseTime> StagedRun::timings() const {
-    std::vector<PhaseTime> all = particles_->timings();
+    std::vector<PhaseTime> all = terrain_->timings();
     if (points_)
         for (PhaseTime phase : points_->timings()) {
             phase.name = "points: " + phase.name;
@@ -584,12 +593,13 @@ void StagedRun::serialize(Archive& archive) {
         points_ = std::make_unique<Mpm3d>(space_of_stage());
         points_->note_departed();
         if (!scene_.barriers.empty()) watch_.emplace(scene_, *points_, start_.blur);
-        if (!ended_) particles_->open_exits(nodes_in_window(scene_), false);
+        if (!ended_) terrain_->open_exits(window_nodes(*scene_.solid), false);
         at_edge_ = nodes_at_edge(scene_);
     }
     {
         const Archive::Part part(archive, "columns");
-        particles_->serialize(archive);
+        terrain_->serialize(archive);
+        if (particles_watch_) depth_averaged().note_parents();  // a larger part is another object
     }
     frana::serialize(archive, "status", status_);
     archive.numbers(
@@ -616,7 +626,7 @@ void StagedRun::serialize(Archive& archive) {
         points_->serialize(archive);
     }
     if (archive.loading() && !ended_) {
-        if (particles_->status().time > points_->status().time) show_particles();
+        if (depth_averaged().status().time > points_->status().time) show_particles();
         for (const DepartedPoint& point : returning_) points_->set_adjacent(point);
     }
     if (watch_ && archive.loading()) watch_->accumulate_loads(*points_);

@@ -12,13 +12,12 @@
 
 #include "coupling/barrier_watch.h"
 #include "coupling/flow_map.h"
-#include "coupling/footings.h"
 #include "coupling/particle_watch.h"
 #include "coupling/solid_scene.h"
 #include "coupling/spray.h"
 #include "coupling/stage_conversion.h"
+#include "coupling/terrain_particles.h"
 #include "observe/frame_store.h"
-#include "shallow/depth_averaged.h"
 
 namespace frana {
 
@@ -39,10 +38,12 @@ public:
     Frame frame() override;
     std::shared_ptr<const void> give_frame_away() override {
         return std::make_shared<const std::array<std::shared_ptr<const void>, 2>>(
-            std::array<std::shared_ptr<const void>, 2>{particles_->give_frame_away(), store_.give_away()});
+            std::array<std::shared_ptr<const void>, 2>{terrain_->give_frame_away(), store_.give_away()});
     }
     Sample at(const Vec2& point) const override;
     const BarrierLoads* loads() const override { return watch_ ? &watch_->loads() : nullptr; }
+    const Raster* ground() const override { return terrain_->ground(); }
+    const Friction* friction() const override { return terrain_->friction(); }
     std::vector<std::string> remarks() const override;
     Extras extras() const override;
     std::vector<PhaseTime> timings() const override;
@@ -50,7 +51,7 @@ public:
 
     /// The 3D points; nullptr before their stage.
     const Mpm3d* points() const { return points_.get(); }
-    const DepthAveraged& particles() const { return *particles_; }
+    const DepthAveraged& particles() const { return terrain_->particles(); }
 
 private:
     /// What the particles gave away, as they recorded it.
@@ -68,12 +69,15 @@ private:
     };
 
     using Marks = std::vector<std::uint8_t>;  ///< of nodes, 1 or 0
-    void begin_3d(const std::function<FlowParticles(const Marks&)>& particles_at);
+    DepthAveraged& depth_averaged() const { return terrain_->particles(); }
+    const Scene& scene_now() const { return terrain_->grown() ? *terrain_->grown() : scene_; }
+    void begin_3d(const std::function<FlowParticles(const Scene&, const Marks&)>& particles_at);
     SolidScene space_of_stage() const;
     void begin_watch();
     bool points_alone() const;
     double next_on_the_way_to(double time) const;
     void step_particles(double until);
+    void take_departed();
     void step_points(double until);
     void convert_to_3d();
     void note_departed();
@@ -124,9 +128,13 @@ private:
     bool stands_in_window(Index i, Index j) const;
     double ground_at(Index i, Index j) const;
 
+    std::uint8_t exit_at(Index i, Index j) const;
+    NodeBox box_of_frame(const Frame& frame) const;
+
+    /// Of the terrain that the run began with. It holds all that points and barriers do, and stays as it is: points have
+    /// the same places, to the last bit, however far particles have come.
     Scene scene_;
-    Footings footings_;  ///< what barriers stand on
-    std::unique_ptr<DepthAveraged> particles_;
+    std::unique_ptr<TerrainParticles> terrain_;
     std::unique_ptr<Mpm3d> points_;
     SolidStart start_;
     FlowMap map_;

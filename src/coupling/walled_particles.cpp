@@ -1,28 +1,15 @@
 #include "coupling/walled_particles.h"
 
-#include "coupling/lake_at_barriers.h"
-
 namespace frana {
 
-WalledParticles::WalledParticles(const Scene& scene, Start start) : density_(scene.density), watch_(scene) {
-    if (scene.wider)
-        growing_ = std::make_unique<GrowingParticles>(scene, start);
-    else
-        hold_all(scene, start);
+WalledParticles::WalledParticles(const Scene& scene, Start start)
+    : density_(scene.density), terrain_(std::make_unique<TerrainParticles>(scene, start)), watch_(scene) {
     particles().note_parents();
     if (start == Start::placed) watch_.sample_particles(particles(), density_);
 }
 
-void WalledParticles::hold_all(Scene scene, Start start) {
-    const Raster bed = scene.bed;
-    footings_ = stand_in(scene, barrier_nodes(scene), 0, 0);
-    footings_.displaced = make_room_in_lake(scene, bed);
-    whole_ = std::make_unique<DepthAveraged>(scene, start);
-}
-
 std::vector<std::string> WalledParticles::remarks() const {
     std::vector<std::string> all = inner().remarks();
-    for (const std::string& remark : remarks_on(footings_)) all.push_back(remark);
     for (const std::string& remark : watch_.remarks()) all.push_back(remark);
     return all;
 }

@@ -1,8 +1,7 @@
 #pragma once
 // Particles among barriers: they take them for ground, and what runs up and over is watched.
-#include "coupling/footings.h"
-#include "coupling/growing_particles.h"
 #include "coupling/particle_watch.h"
+#include "coupling/terrain_particles.h"
 
 namespace frana {
 
@@ -17,20 +16,13 @@ public:
     std::vector<PhaseTime> timings() const override;
     void serialize(Archive& archive) override;
 
-    DepthAveraged& particles() const { return growing_ ? growing_->particles() : *whole_; }
+    DepthAveraged& particles() const { return terrain_->particles(); }
 
 private:
-    Simulation& inner() const override {
-        if (growing_) return *growing_;
-        return *whole_;
-    }
-
-    void hold_all(Scene scene, Start start);
+    Simulation& inner() const override { return *terrain_; }
 
     double density_;
-    Footings footings_;                          ///< of barriers on all of the terrain
-    std::unique_ptr<DepthAveraged> whole_;       ///< on all of the terrain
-    std::unique_ptr<GrowingParticles> growing_;  ///< or on a part of it
+    std::unique_ptr<TerrainParticles> terrain_;
     ParticleWatch watch_;
     StepClock timed_;
 };

@@ -38,9 +38,9 @@ constexpr double tile_nodes_3d = 512.0, bytes_per_tile_3d = 16.0;
 /// them.
 constexpr double stage_rate = 3.0 * sizeof(double) + 2.0, points_map_rate = 18.0 * sizeof(double);
 
-double memory_of_stage(const Scene& scene) {
+double memory_of_map(const Scene& scene) {
     const NodeBox box = nodes_of_points(scene);
-    return stage_rate * double(scene.bed.geometry.size()) + points_map_rate * double(box.nx * box.ny);
+    return points_map_rate * double(box.nx * box.ny);
 }
 
 double tiles_3d(const Scene& scene) {
@@ -109,6 +109,7 @@ double memory_of_fields(const Scene& scene, double nodes) {
     if (scene.deposition || scene.forest) bytes += (deposition_rate + (scene.erodible ? raised_rate : 0.0)) * nodes;
     if (scene.forest) bytes += forest_rate * nodes;
     if (scene.friction) bytes += memory_of(*scene.friction, nodes);
+    if (scene.solid) bytes += stage_rate * nodes;
     if (!scene.barriers.empty() && !scene.solid) bytes += memory_of_fields_among_barriers(scene, nodes);
     return bytes;
 }
@@ -127,7 +128,7 @@ MemoryNeed memory_need(const Scene& scene) {
                                    [](const Insitu& entry) { return kind_word(entry.kind) == std::string("figure"); });
     if (scene.output.png || draws) need.base += graphics_need;
     if (!scene.solid) return need;
-    need.nodes += memory_of_stage(scene);
+    need.nodes += memory_of_map(scene);
     need.space = bytes_per_point * most_points(scene) + bytes_per_tile_3d * tiles_3d(scene);
     return need;
 }

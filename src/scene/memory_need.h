@@ -19,7 +19,7 @@ struct MemoryNeed {
 MemoryNeed memory_need(double nodes, double particles, bool vtk);
 /// Of the nodes of a part of a terrain (scene/terrain_part.h), most of which are never reached [bytes].
 double memory_of_part(double nodes);
-/// The same for what a scene has besides on so many nodes: loose material, forest, spatially varying friction [bytes].
+/// The same for what a scene has besides on so many nodes: loose material, forest, friction that varies, a 3D stage [bytes].
 double memory_of_fields(const Scene& scene, double nodes);
 /// Of a scene that is built.
 MemoryNeed memory_need(const Scene& scene);

@@ -143,7 +143,7 @@ private:
         stage.window = {0, 0, g.nx - 1, g.ny - 1};
         if (!given("window")) return true;
         const auto& w = case_.numbers(prefix_ + "window");
-        const auto e = g.pixel_extent();
+        const auto e = (scene_.wider ? scene_.wider->grid : g).pixel_extent();
         const bool inside = w[0] >= e[0] && w[1] >= e[1] && w[2] <= e[2] && w[3] <= e[3];
         constexpr double kRoundOff = 1e-9;
         const auto first = [&](double at, double start) {

@@ -18,11 +18,14 @@ void take_corners(const Polygons& polygons, std::vector<Vec2>& points) {
         for (const auto& ring : polygon.rings) points.insert(points.end(), ring.begin(), ring.end());
 }
 
+bool in_3d(const CaseFile& file, Index stage) { return file.word(fmt::format("stage.{}.model", stage)) == "mpm3d"; }
+
 /// Particles alone can go on on a larger part.
 bool may_begin_with_part(const CaseFile& file, const Scene& scene) {
     if (scene.output.whole_terrain || are_closed(scene.sides)) return false;
-    for (const char* table : {"stage", "insitu"})
-        if (file.count(table) > 0) return false;
+    if (file.count("insitu") > 0) return false;
+    for (Index i = 0; i < file.count("stage"); ++i)
+        if (in_3d(file, i) && !file.given(fmt::format("stage.{}.window", i))) return false;  // it is all of the terrain
     for (Index i = 0; i < file.count("barrier"); ++i)
         if (file.given(fmt::format("barrier.{}.mesh", i))) return false;  // its place is known once it is read
     if (friction_by_table(file)) return false;  // its classes follow from terrain around a node
@@ -96,6 +99,11 @@ std::vector<Vec2> corners_of_material(const CaseFile& file, const GisReader& rea
     for (Index i = 0; i < file.count("release"); ++i)
         if (!take_release(file, i, reader, whole, points)) return {};
     take_inflows(file, reader, whole, points);
+    for (Index i = 0; i < file.count("stage"); ++i) {
+        if (!in_3d(file, i)) continue;
+        const auto& window = file.numbers(fmt::format("stage.{}.window", i));  // its points leave it as particles
+        points.emplace_back(window[0], window[1]), points.emplace_back(window[2], window[3]);
+    }
     return points;
 }
 

@@ -49,9 +49,9 @@ public:
     std::string why_not_add(const Seeds& particles) const override;
     void add(const Seeds& particles) override;
 
-    /// From now on particles leave at the nodes marked (1; row after row from the south) and are noted. With
-    /// `leave_now` those that stand there leave too, and are not noted.
-    void open_exits(const std::vector<std::uint8_t>& marks, bool leave_now);
+    /// From now on particles leave at these nodes and are noted. With `leave_now` those that stand there leave too, and
+    /// are not noted.
+    void open_exits(const NodeBox& nodes, bool leave_now);
     /// The particles that left so since the last call, by id.
     std::vector<Departed> take_departed();
 

@@ -30,11 +30,9 @@ void wake_all(Flow& flow) {
 
 }  // namespace
 
-void DepthAveraged::open_exits(const std::vector<std::uint8_t>& marks, bool leave_now) {
-    expect(static_cast<Index>(marks.size()) == flow_.grid.geometry().size(), "every node of the grid is marked or not");
-    for (Index j = 0; j < flow_.grid.ny(); ++j)
-        for (Index i = 0; i < flow_.grid.nx(); ++i)
-            if (marks[static_cast<std::size_t>(j * flow_.grid.nx() + i)]) flow_.bed.exit[flow_.grid.at(i, j)] = kNoted;
+void DepthAveraged::open_exits(const NodeBox& nodes, bool leave_now) {
+    for (Index j = nodes.j0; j < nodes.j0 + nodes.ny; ++j)
+        for (Index i = nodes.i0; i < nodes.i0 + nodes.nx; ++i) flow_.bed.exit[flow_.grid.at(i, j)] = kNoted;
     flow_.bed.has_exits = true;
     flow_.departed.resize(static_cast<std::size_t>(omp_get_max_threads()));
     if (leave_now) leave_at_exits();

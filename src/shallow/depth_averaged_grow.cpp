@@ -35,6 +35,10 @@ void DepthAveraged::take_over(DepthAveraged& from, Index east, Index north) {
     Particles& c = flow_.particles;
     c = std::move(from.flow_.particles);
     for (Index p = 0; p < c.count(); ++p) c.x[p] += static_cast<double>(east), c.y[p] += static_cast<double>(north);
+    flow_.departed = std::move(from.flow_.departed);
+    for (std::vector<Departed>& list : flow_.departed)
+        for (Departed& particle : list)
+            particle.x += static_cast<double>(east), particle.y += static_cast<double>(north);
     copy_peaks(from.flow_.grid, from.peaks_, flow_.grid, peaks_, east, north);
     splitter_ = std::move(from.splitter_), merger_ = std::move(from.merger_), timed_ = std::move(from.timed_);
     births_wanted_ = from.births_wanted_, end_of_births_ = from.end_of_births_;
