@@ -54,23 +54,26 @@ double depth_of_flow(const Source& source, double otherwise) {
     return source.area > 0.0 ? source.volume / (kSpread * source.area) : otherwise;
 }
 
+/// Parts of particles are an eighth of a full point at the least.
+constexpr double kPartsOfPoint = 8.0;
+
 /// Points of such material. A layer thinner than the spacing is one of points; each is an eighth of a full one at the
 /// least, as parts of particles are. And each particle becomes one at least. Those that grow as wide as a cell have
 /// split: eight to ten were on a cell of that avalanche.
 double points_of_flow(const Source& source, const Scene& scene) {
-    constexpr double kLeast = 8.0, kOnCell = 8.0;
+    constexpr double kOnCell = 8.0;
     const double spacing = scene.solid->spacing, full = source.volume / std::pow(spacing, 3),
                  depth = depth_of_flow(source, spacing), cell = scene.bed.geometry.cell;
     const double layers = static_cast<double>(layer_count(depth, spacing)),
                  split = scene.scheme.split ? kOnCell * kSpread * source.area / (cell * cell) : 0.0;
-    return std::max({source.particles, split, full * std::min(kLeast, layers * spacing / depth)});
+    return std::max({source.particles, split, full * std::min(kPartsOfPoint, layers * spacing / depth)});
 }
 
-/// The points that a window has room for where the material lies as deep as it does at its deepest.
+/// The points that a window has room for where the material lies as deep as it does at its deepest. Each may be in parts.
 double room_for(const Source& source, const Scene& scene) {
     const std::array<double, 4> window = window_of(scene);
     const double spacing = scene.solid->spacing;
-    return (window[2] - window[0]) * (window[3] - window[1]) / (spacing * spacing) *
+    return kPartsOfPoint * (window[2] - window[0]) * (window[3] - window[1]) / (spacing * spacing) *
            std::max(1.0, std::ceil(source.deepest / spacing));
 }
 

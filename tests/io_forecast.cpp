@@ -55,12 +55,15 @@ TEST_CASE("check foretells steps and points of a stage in which the flow starts 
 }
 
 // Points were volume over spacing^3, though each particle becomes one at least, and sound was that of the release's
-// depth: a twentieth of the points and a third of the steps.
+// depth: a twentieth of the points and a third of the steps. And a window had room for full points only.
 TEST_CASE("check foretells steps and points of a stage that a flow comes to within a factor of two", "[check]") {
+    const std::string cell = GENERATE("8", "20");
+    CAPTURE(cell);
     const Scene scene =
         scene_with("above.geojson", 37.0,
                    "[[stage]]\nmodel = \"depth_averaged\"\nuntil = 25\n[[stage]]\nmodel = \"mpm3d\"\nwindow = [0, 0, "
-                   "250, 120]\ncell = 8\n");
+                   "250, 120]\ncell = " +
+                       cell + "\n");
     const StageForecast foretold = forecast_stage(scene);
     const Taken taken = taken_by(scene);
     REQUIRE(taken.points > 100.0);
