@@ -135,6 +135,8 @@ TEST_CASE("Barriers lower than a cell of a 3D stage are remarked upon, and what 
     };
     const std::string low = "house stands 1.5 m high, 0.75 cells of the 3D stage; expected 1 or more";
     CHECK(says(scene("height = 1.5\n", "2.0"), low));
+    CHECK(says(scene("height = 1.5\n", "2.0"), "err by a tenth, and moments by more"));
+    CHECK(says(scene("height = 0.1\n", "2.0"), "err by half or more, and moments by more"));
     CHECK_FALSE(says(scene("height = 4\n", "2.0"), "m high"));
     CHECK_FALSE(says(scene_of(with_houses("height = 4\n"), gis), "m high"));  // to particles it is ground
     // 10 m of one end and 20 m of both sides, of 180 m around it.

@@ -135,10 +135,14 @@ private:
         constexpr double kCells = 1.0;
         const double cell = scene_.solid->cell, height = height_of(barrier);
         if (!(height > 0.0) || height >= kCells * cell || !std::isfinite(height)) return;
-        scene_.log.push_back(
-            fmt::format("{}: {} stands {:.3g} m high, {:.2g} cells of the 3D stage; expected {:g} or more, or the "
-                        "forces on its sides and on its top err by a tenth or more; stage.cell = {:g} would do",
-                        place(), barrier.name, height, height / cell, kCells, round_number_below(height / kCells)));
+        const char* const off = height >= 0.5 * cell   ? "a tenth"
+                                : height >= 0.1 * cell ? "a tenth to two fifths"
+                                                       : "half or more";
+        scene_.log.push_back(fmt::format(
+            "{}: {} stands {:.3g} m high, {:.2g} cells of the 3D stage; expected {:g} or more, or the "
+            "forces on its sides and on its top err by {}, and moments by more; stage.cell = {:g} "
+            "would do",
+            place(), barrier.name, height, height / cell, kCells, off, round_number_below(height / kCells)));
     }
 
     /// Material between two surfaces less than a few cells apart is pressed by both. In a room of a cell below a deck, half
