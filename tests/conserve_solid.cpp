@@ -195,8 +195,7 @@ TEST_CASE("A mirrored 3D scene gives the mirrored flow", "[solid]") {
 
 namespace {
 
-/// A cylinder of mud as slender as it falls apart before a wall, which only pushes; half is on each side of x = 0, or all
-/// of it that there is beyond x = 0.
+/// A cylinder of mud around x = 0, so high that it slumps: the whole of it, or the half beyond x = 0 before `middle`.
 SolidScene cylinder_of_mud(bool whole, bool stuck, const Surface& middle) {
     constexpr double kRadius = 0.3, kHeight = 0.8, kCell = 0.1, kDensity = 1000.0;
     const double low = whole ? -1.0 : 0.0, bulk = 4e5;

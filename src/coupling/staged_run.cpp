@@ -501,8 +501,8 @@ void StagedRun::remark_walls(std::vector<std::string>& remarks) const {
     }
 }
 
-/// Points that move nearly at the speed of sound are pressed together. Of fluids and of sand by the bed the stiffness is a
-/// means, of a law that was given by name it is the case's.
+/// Points that move nearly at the speed of sound are pressed together. The stiffness of fluids, and of
+/// sand by the bed, is artificial. A solid law that is given by name has the case's.
 void StagedRun::remark_sound(std::vector<std::string>& remarks) const {
     constexpr double kEnough = 0.2;  // of the speed of sound: 4 % of the density
     const SolidStage& stage = *scene_.solid;

@@ -139,7 +139,7 @@ struct PatchedFace {
     double size = 1.0;                              ///< edge of a patch [m]
     std::array<Index, 2> count{};                   ///< patches along right and up
     std::vector<double> area;                       ///< of each patch that material can reach [m^2]
-    std::vector<char> off_face;                     ///< per patch: 1 if it is not on the face; or empty
+    std::vector<char> off_face;                     ///< per patch: 1 if nothing of the face is there; or empty
     std::vector<std::array<double, 3>> impulse;     ///< on the barrier, row after row from the corner [kg m/s]
 };
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "terrain/places.h"
+#include "terrain/bed_points.h"
 
 namespace frana {
 namespace {
@@ -30,7 +30,7 @@ Gap gap_below(const DistanceField& solid, const Raster& bed, double least, doubl
     for (Index j = 0; j < solid.nodes[1]; ++j)
         for (Index i = 0; i < solid.nodes[0]; ++i) {
             const Vec3 place = solid.place(i, j, 0);
-            const double ground = NodeSquare(bed.geometry, place.x(), place.y()).value(bed);
+            const double ground = bilinear(bed, place.head<2>());
             if (!std::isfinite(ground)) continue;
             const double room = room_above(solid, {place.x(), place.y(), ground});
             if (!std::isfinite(room)) continue;

@@ -151,6 +151,7 @@ FaceLedger::FaceLedger(const std::vector<Surface>& surfaces, const Vec3& low, co
                 face.patches.measure_top(*surface.prism, surfaces);
             else
                 face.patches.measure(surfaces);
+            if (surface.kind != Surface::Kind::prism) face.patches.off_face.clear();  // its faces are those of its box
             faces_.push_back(std::move(face));
         }
     }

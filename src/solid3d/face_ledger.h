@@ -28,7 +28,7 @@ struct Patches {
     std::array<double, 2> extent{0, 0};  ///< of the face [squares]; the last row and column may stick out
     std::vector<double> area;            ///< of each square that material can reach [m^2]
     std::vector<double> tops;            ///< of a prism's side: where it ends in the middle of each column [squares]
-    std::vector<char> off_face;          ///< per square of a prism: 1 if it is not on the face, or beyond others
+    std::vector<char> off_face;          ///< per square of a prism: 1 if nothing of the face is there; empty for shapes
     std::vector<Vec3> impulse;           ///< on the material since the start, at row * count[0] + column [kg m/s]
 
     /// What lies within `reach` [m] of a place on the face, and neither beyond the face nor beyond `others`. These are
@@ -36,7 +36,7 @@ struct Patches {
     /// nearest place.
     FacePart around(const Vec3& x, double reach, const std::vector<Surface>& others) const;
     /// Finds `area`: the part of each square that is of the face and not beyond `others`, on the map for a top. It is a
-    /// quarter of the square at least, so that single points do not count too much. And `off_face`: where nothing is.
+    /// quarter of the square at least, so that single points do not count too much. And `off_face`.
     void measure(const std::vector<Surface>& others);
     void measure_top(const Prism& prism, const std::vector<Surface>& others);
     /// Gives each square the share of an impulse that it has of the part.

@@ -51,6 +51,11 @@ void add_slice(SolidScene& scene, double width) {
     scene.surfaces.push_back(Surface::plane({0, width, 0}, {0, -1, 0}));
 }
 
+void add_quarter(SolidScene& scene) {
+    scene.surfaces.push_back(Surface::symmetry_plane({0, 0, 0}, {1, 0, 0}));
+    scene.surfaces.push_back(Surface::symmetry_plane({0, 0, 0}, {0, 1, 0}));
+}
+
 Measurement run_body(Mpm3d& flow, double end, const std::function<void(const Mpm3d&)>& each) {
     const auto start = std::chrono::steady_clock::now();
     const SolidStatus first = flow.status();

@@ -25,6 +25,8 @@ GridGeometry3d grid_around(const Frame3& frame, const Vec3& low, const Vec3& hig
 
 /// The two planes at y = 0 and y = width that make a slice of a plane problem.
 void add_slice(SolidScene& scene, double width);
+/// The two planes of symmetry at x = 0 and y = 0 that make a quarter of a round problem.
+void add_quarter(SolidScene& scene);
 
 /// A run to `end`, timed; calls each(flow) after every step. momentum_residual: what the ledger of surfaces
 /// and gravity leaves open, over all momentum that went round.

@@ -13,10 +13,12 @@ namespace frana::verify {
 namespace {
 
 using constants::kDegree, constants::kGravity;
-constexpr double kColumnWidthCells = 3.0;  // of a slice
+constexpr double kColumnWidthCells = 3.0;                          // of a slice
+constexpr double kSandDensity = 1600.0, kRepose = 31.0 * kDegree;  // of Lube's columns [kg/m^3], [rad]
 
-/// Where the first gap of a cell begins.
+/// Where the first gap of a cell begins; 0 without places.
 double first_gap(std::vector<double>& places, double cell) {
+    if (places.empty()) return 0.0;
     std::sort(places.begin(), places.end());
     std::size_t n = 1;
     while (n < places.size() && places[n] - places[n - 1] < cell) ++n;
@@ -78,14 +80,14 @@ SolidLaw sand(const solid::Elastic& elastic, double phi) {
 
 /// Runout of a column half as high as long, with sand so many times as stiff.
 Measurement run_stiff_column(const Setup& setup, double stiffness, double& runout) {
-    constexpr double kLength = 0.1, kHeight = 0.05, kDensity = 1600.0, kPhi = 31.0 * kDegree;
+    constexpr double kLength = 0.1, kHeight = 0.05;
     const double cell = kHeight / static_cast<double>(setup.cells);
-    const solid::Elastic soft = stiff_enough(kDensity, kHeight);
+    const solid::Elastic soft = stiff_enough(kSandDensity, kHeight);
     const Heap heap{kLength,
                     kHeight,
-                    kDensity,
-                    sand({stiffness * soft.lambda, stiffness * soft.shear}, kPhi),
-                    std::tan(kPhi),
+                    kSandDensity,
+                    sand({stiffness * soft.lambda, stiffness * soft.shear}, kRepose),
+                    std::tan(kRepose),
                     0.3,
                     4.0 * std::sqrt(kHeight / kGravity) + 0.1};
     Mpm3d flow(heap.scene(cell, setup.per_side));
@@ -107,7 +109,7 @@ Measurement run_column_steps(const Setup& setup) {
 /// Plane columns of sand, height over half-length 0.5, 1, 2, 3. Runout over length by Lube et al. (2005): 1.2 a below
 /// 2.3, 1.9 a^(2/3) above. Cells are counted along the shorter side.
 Measurement run_column_collapse(const Setup& setup) {
-    constexpr double kLength = 0.1, kDensity = 1600.0, kPhi = 31.0 * kDegree;
+    constexpr double kLength = 0.1;
     Measurement m;
     double worst = 0.0;
     std::vector<std::pair<std::string, double>> found;
@@ -116,9 +118,9 @@ Measurement run_column_collapse(const Setup& setup) {
         const double cell = std::min(kLength, height) / static_cast<double>(setup.cells);
         const Heap heap{kLength,
                         height,
-                        kDensity,
-                        sand(stiff_enough(kDensity, height), kPhi),
-                        std::tan(kPhi),
+                        kSandDensity,
+                        sand(stiff_enough(kSandDensity, height), kRepose),
+                        std::tan(kRepose),
                         (2.0 + 1.5 * law) * kLength,
                         4.0 * std::sqrt(height / kGravity) + 0.1};
         Mpm3d flow(heap.scene(cell, setup.per_side));
@@ -134,18 +136,17 @@ Measurement run_column_collapse(const Setup& setup) {
 
 /// A quarter of a round column of sand between two planes of symmetry, until it rests but for what creeps.
 SolidScene quarter_column(double radius, double height, double room, double cell, int per_side) {
-    constexpr double kDensity = 1600.0, kPhi = 31.0 * kDegree;
     SolidScene s;
     s.gravity = {0, 0, -kGravity};
-    s.density = kDensity;
+    s.density = kSandDensity;
     s.grid = grid_around({}, {0, 0, 0}, {room, room, height}, cell);
-    s.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}, Hold::free, std::tan(kPhi)),
-                  Surface::symmetry_plane({0, 0, 0}, {1, 0, 0}), Surface::symmetry_plane({0, 0, 0}, {0, 1, 0})};
+    s.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}, Hold::free, std::tan(kRepose))};
+    add_quarter(s);
     s.flip = s.split = true;
     s.blending = std::sqrt(cell / kGravity);
-    s.law = sand(stiff_enough(kDensity, height), kPhi);
+    s.law = sand(stiff_enough(kSandDensity, height), kRepose);
     for_each_part({0, 0, 0}, {radius, radius, height}, cell, per_side, [&](const Vec3& x, double volume) {
-        if (x.head<2>().norm() < radius) s.points.add(x, Vec3::Zero(), kDensity * volume);
+        if (x.head<2>().norm() < radius) s.points.add(x, Vec3::Zero(), kSandDensity * volume);
     });
     return s;
 }
